@@ -1,4 +1,5 @@
-//! `foveal bench culling-frames`: whole frames by each way of culling, in turn while the camera sways.
+//! `foveal bench culling-frames`: whole frames by each way of culling, in turn while the camera
+//! sways.
 
 use foveal::{Culling, Frame, FrameStats, Renderer, Settings};
 use foveal_host::values;

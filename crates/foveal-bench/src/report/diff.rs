@@ -2,8 +2,8 @@
 //!
 //! A time counts as slower when its median grew by more than a twentieth *and* the new passes all
 //! lie above the old ones: where the passes of both overlap, the machine's noise explains the
-//! difference. Where a bench makes one pass, the intervals of its ratios to the plain frame take the
-//! passes' place.
+//! difference. Where a bench makes one pass, the intervals of its ratios to the plain frame take
+//! the passes' place.
 
 mod page;
 mod pairs;

@@ -98,7 +98,7 @@ fn drawn_by(f: &Figures<'_>, at: &str) -> Markup {
     }
 }
 
-/// The row whose command is there to copy: what was adopted together, or else what is fastest alone.
+/// The row whose command is there to copy: all that was adopted together, or else the fastest.
 fn best(f: &Figures<'_>, at: &str) -> Option<usize> {
     let of = |row: usize, key: &str| format!("{at}/rows/{row}/{key}");
     let adopted: Vec<usize> = (0..f.len(&format!("{at}/rows")))

@@ -38,8 +38,8 @@ pub(super) struct Found {
     /// Whole frames by the processor's time, of all threads: where the processor draws, and other
     /// programs take their share of it, that is steadier.
     pub(super) work: Option<Comparison>,
-    /// How near the picture is to the plain one. `Err` is what the renderer said of a technique that
-    /// turned itself off: what was timed then is another frame than the one that its settings draw.
+    /// How near the picture is to the plain one. `Err` is what the renderer said of a technique
+    /// that turned itself off: what was timed then is another frame than the one that its settings draw.
     pub(super) nearness: Result<Nearness, String>,
 }
 

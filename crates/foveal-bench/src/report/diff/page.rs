@@ -25,7 +25,8 @@ pub(super) fn of(old: &Value, new: &Value, pairs: &[Pair]) -> String {
         p {
             "The scene " b { (text(new, "/scene")) } " at " (new["width"]) " x " (new["height"])
             " pixels. Ratios are the old time by the new one: above 1 it became faster. A change is one of more than a \
-             twentieth whose passes do not overlap; where there is one pass, the intervals of its ratio to the plain frame."
+             twentieth whose passes do not overlap; where there is one pass, the \
+             intervals of its ratio to the plain frame."
         }
         @for (name, report) in [("Old", old), ("New", new)] {
             p.faint {

@@ -66,8 +66,8 @@ fn is_time(key: &str) -> bool {
     (key == "ms" || key.ends_with("_ms")) && !is_gain && !is_percentile
 }
 
-/// Between what a time lies in each of two rows: the least and the largest of the passes. Where there
-/// was one pass: the interval of the time by the plain frame's, which was drawn in turn with it.
+/// Between what a time lies in each of two rows: the least and the largest of the passes. Where
+/// there was one pass: the interval of the time by the plain frame's, which was drawn in turn with it.
 /// `None` where the rows have neither.
 fn bounds(rows: [&Value; 2], key: &str) -> Option<[[f64; 2]; 2]> {
     let of_passes = |row: &Value| {
