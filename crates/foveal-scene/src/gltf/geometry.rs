@@ -253,7 +253,7 @@ impl Fill<'_> {
     }
 }
 
-/// Linear RGBA in 8 bits from any of glTF's colour formats.
+/// Linear RGBA in 16 bits from any of glTF's colour formats.
 fn colors(reader: Reader<'_>, accessor: u32) -> Parsed<Vec<[u16; 4]>> {
     let found = reader.accessor(accessor);
     // Integers that forgot to say so are meant as fractions: colours have no other use for them.

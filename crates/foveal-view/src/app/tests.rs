@@ -136,7 +136,7 @@ impl<'a> Pass<'a> {
         output
     }
 
-    pub(super) fn press(&self, app: &mut App, modifiers: Modifiers, key: Key) {
+    fn press(&self, app: &mut App, modifiers: Modifiers, key: Key) {
         let event = |pressed| Event::Key {
             key,
             physical_key: None,
