@@ -37,6 +37,8 @@ pub(crate) struct OcclusionBuffer {
     pub(crate) hiz: Vec<i16>,
     /// 1 if the memory of a block holds depth, of this frame or an earlier one; else 0.
     pub(crate) used: Vec<u8>,
+    /// Drawing has begun, and `used` does not tell of it yet.
+    is_unfinished: bool,
 }
 
 impl OcclusionBuffer {
@@ -59,13 +61,17 @@ impl OcclusionBuffer {
             work: vec![0; blocks_y as usize],
             hiz: vec![EMPTY; hiz_layout::len(blocks_x, blocks_y)],
             used: vec![0; n],
+            is_unfinished: false,
         }
     }
 
     pub(crate) fn clear(&mut self) {
-        // A frame that a panic ended has not noted which blocks it drew.
-        for (used, state) in self.used.iter_mut().zip(&self.states) {
-            *used |= u8::from(state.kind() != KIND_EMPTY);
+        // A panic ended the last frame.
+        if self.is_unfinished {
+            for (used, state) in self.used.iter_mut().zip(&self.states) {
+                *used |= u8::from(state.kind() != KIND_EMPTY);
+            }
+            self.is_unfinished = false;
         }
         self.min.fill(EMPTY);
         self.states.fill(BlockState::EMPTY);
@@ -95,6 +101,7 @@ impl OcclusionBuffer {
     /// All rows of blocks as one band. Work is counted anew.
     pub(crate) fn band(&mut self) -> Band<'_> {
         self.work.fill(0);
+        self.is_unfinished = true;
         Band {
             blocks_x: self.blocks_x,
             first_row: 0,
@@ -113,6 +120,7 @@ impl OcclusionBuffer {
 
     /// Clears stale blocks, so that later reads need not ask for the state. Few blocks are stale.
     pub(crate) fn empty_stale(&mut self) {
+        self.is_unfinished = false;
         let chunks = self.states.chunks(64).zip(self.used.chunks_mut(64));
         for ((held, used), depths) in chunks.zip(self.depth.chunks_mut(64)) {
             let nothing = |state: &BlockState| u8::from(state.kind() == KIND_EMPTY);
@@ -163,6 +171,7 @@ mod tests {
         let holds: [fn(usize) -> bool; 4] = [|b| b % 3 == 0, |b| b % 2 == 0, |_| false, |b| b > 90];
         for (code, holds) in (1i16..).zip(holds) {
             buffer.clear();
+            buffer.band();
             for b in (0..buffer.states.len()).filter(|&b| holds(b)) {
                 buffer.states[b] = BlockState::DEPTH;
                 buffer.depth[b].0.fill(code);
