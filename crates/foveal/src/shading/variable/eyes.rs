@@ -93,7 +93,7 @@ fn each_eyes_rates_and_samples_equal_their_twins() {
             let known = reprojected(&part(&known, eye, 2), &found);
             let (off, quads) = (known_otherwise(&known, &twin), known.len());
             assert!(off <= quads / 200, "eye {eye}: {off} of {quads} known");
-            let twin = twin::rates(&settings, &seen, cameras[0], &known, probe);
+            let twin = twin::rates(&settings, &seen, cameras, &known, probe);
             let off = differing(&found, &twin);
             assert!(off <= quads / 400, "eye {eye}: {off} of {quads} rates");
             found.iter().for_each(|m| rates_seen[*m as usize & 7] += 1);

@@ -23,7 +23,7 @@ override LOOKS_AROUND: bool = true;
 // Luma that is added to the local mean: what a dark picture's contrast is relative to (Weber's law
 // fails there).
 const DARK: f32 = 0.1;
-// Least cosine between the halves of a quad for them to count as one plane.
+// Least cosine between normals of what counts as one plane.
 const FLAT: f32 = 0.9;
 
 struct Listed {
@@ -128,22 +128,58 @@ fn requested_rate(quad: vec2u, lumas: vec4f, motion: vec2f) -> u32 {
     return rate;
 }
 
-// The coarsest rate at which a sample's pixels show one surface: pixels of one instance, in one
-// plane. `last` is the quad's last pixel within the picture.
-fn surface_limit(picture: Picture, maps: EyeMaps, first: vec2u, last: vec2u, who: vec4u, d: vec4f) -> u32 {
-    let wide = u32(who.x == who.y && who.z == who.w);
-    let tall = u32(who.x == who.z && who.y == who.w);
-    let limit = wide | (tall << 1u);
+// What the pixels of a quad show.
+struct Shown {
+    // The coarsest rate at which a sample's pixels show one surface.
+    limit: u32,
+    // Of the plane through the first pixel and those to the right and below, any length.
+    normal: vec3f,
+}
+
+fn are_parallel(a: vec3f, b: vec3f) -> bool {
+    let along = dot(a, b);
+    return along > 0.0 && along * along >= FLAT * FLAT * dot(a, a) * dot(b, b);
+}
+
+// Depth at a place relative to a quad's first pixel, as far as the picture goes.
+fn depth_beside(picture: Picture, first: vec2u, offset: vec2i) -> f32 {
+    return load_depth(depth, vec2u(clamp(vec2i(first) + offset, vec2i(picture.low), vec2i(picture.end) - 1)));
+}
+
+// One surface: pixels of one instance in one plane, which goes on to one side at least across and
+// down. (Two planes with a step between them along the quad's middle are one plane for the quad's
+// own pixels, steep as it is.) `last` is the quad's last pixel within the picture.
+fn shown_by(picture: Picture, maps: EyeMaps, first: vec2u, last: vec2u, who: vec4u, d: vec4f) -> Shown {
+    let wide = who.x == who.y && who.z == who.w;
+    let tall = who.x == who.z && who.y == who.w;
     // Depth is affine in the picture on a plane, so its slopes across and down give the plane's
     // normal, up to a factor: of the quad's upper left three pixels and of its lower right three.
-    let step = vec2f(2.0, -2.0) / frame.size * maps.view_from_ndc.xy;
-    let upper = normal_of(vec2f(d.y - d.x, d.z - d.x) / step, on_plane(maps, picture, first), d.x);
-    let lower = normal_of(vec2f(d.w - d.z, d.w - d.y) / step, on_plane(maps, picture, last), d.w);
-    let along = dot(upper, lower);
-    let flat = along > 0.0 && along * along >= FLAT * FLAT * dot(upper, upper) * dot(lower, lower);
+    let step = depth_step(maps);
+    let at_first = on_plane(maps, picture, first);
+    let at_last = on_plane(maps, picture, last);
+    let slopes = vec2f(d.y - d.x, d.z - d.x);
+    let upper = normal_of(slopes / step, at_first, d.x);
+    let lower = normal_of(vec2f(d.w - d.z, d.w - d.y) / step, at_last, d.w);
+    let left = vec2f(d.x - depth_beside(picture, first, vec2i(-1, 0)), slopes.y);
+    let right = vec2f(depth_beside(picture, first, vec2i(2, 0)) - d.y, d.w - d.y);
+    let above = vec2f(slopes.x, d.x - depth_beside(picture, first, vec2i(0, -1)));
+    let below = vec2f(d.w - d.z, depth_beside(picture, first, vec2i(0, 2)) - d.z);
+    let at_right = vec2f(at_last.x, at_first.y);
+    let at_below = vec2f(at_first.x, at_last.y);
+    let across = are_parallel(upper, normal_of(left / step, at_first, d.x))
+        || are_parallel(upper, normal_of(right / step, at_right, d.y));
+    let down = are_parallel(upper, normal_of(above / step, at_first, d.x))
+        || are_parallel(upper, normal_of(below / step, at_below, d.z));
     // At the picture's edge pixels stand in for each other.
     let whole = all(last == first + 1u) && who.x != 0u && who.w != 0u;
-    return select(0u, limit, flat || !whole);
+    let flat = are_parallel(upper, lower);
+    let limit = u32(wide && (!whole || (flat && across))) | (u32(tall && (!whole || (flat && down))) << 1u);
+    return Shown(limit, upper);
+}
+
+// From one pixel to the next, right and down, on the plane at distance 1.
+fn depth_step(maps: EyeMaps) -> vec2f {
+    return vec2f(2.0, -2.0) / frame.size * maps.view_from_ndc.xy;
 }
 
 // Of the plane through the point seen at `at` with depth `d`, from depth's slopes. The scale keeps
@@ -157,6 +193,9 @@ var<workgroup> tile_rates: array<u32, 64>;
 var<workgroup> tile_who: array<u32, 64>;
 // Least and greatest luma of each quad.
 var<workgroup> tile_range: array<vec2f, 64>;
+// Depth of each quad's first pixel, and its plane's normal.
+var<workgroup> tile_depth: array<f32, 64>;
+var<workgroup> tile_normal: array<vec3f, 64>;
 // Samples of each rate, and where they begin: alike ones lie together, so that lanes that light
 // them side by side have equally many pixels to write.
 var<workgroup> found_of: array<atomic<u32>, 5>;
@@ -164,21 +203,30 @@ var<workgroup> starts: array<u32, 5>;
 var<workgroup> found_unknown: atomic<u32>;
 
 // Whether the four quads of a block are shaded as one.
-fn is_block(local: vec2u) -> bool {
+fn is_block(picture: Picture, maps: EyeMaps, quad: vec2u, local: vec2u) -> bool {
     let first = (local.y & 6u) * 8u + (local.x & 6u);
     let others = array(first, first + 1u, first + 8u, first + 9u);
     var together = 7u;
     var range = tile_range[first];
     var same = true;
+    var flat = true;
     for (var i = 0u; i < 4u; i++) {
         let at = others[i];
         together &= tile_rates[at];
         same = same && tile_who[at] == tile_who[first];
+        flat = flat && are_parallel(tile_normal[first], tile_normal[at]);
         range = vec2f(min(range.x, tile_range[at].x), max(range.y, tile_range[at].y));
     }
+    // The plane from quad to quad is the quads' own: no step in depth lies between them.
+    let d = vec4f(tile_depth[others[0]], tile_depth[others[1]], tile_depth[others[2]], tile_depth[others[3]]);
+    let step = 2.0 * depth_step(maps);
+    let texel = (quad & vec2u(~1u)) * 2u;
+    let upper = normal_of(vec2f(d.y - d.x, d.z - d.x) / step, on_plane(maps, picture, texel), d.x);
+    let lower = normal_of(vec2f(d.w - d.z, d.w - d.y) / step, on_plane(maps, picture, texel + 2u), d.w);
+    flat = flat && are_parallel(tile_normal[first], upper) && are_parallel(tile_normal[first], lower);
     let alike = range.y - range.x <= rates.threshold * (0.5 * (range.x + range.y) + DARK);
     let wanted = (together & RATE_BLOCK) != 0u || (together == 3u && alike);
-    return same && wanted && (together & 3u) == 3u;
+    return same && wanted && (together & 3u) == 3u && (flat || tile_who[first] == 0u);
 }
 
 @compute @workgroup_size(8, 8)
@@ -193,12 +241,14 @@ fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
     var notes = 0u;
     var found = vec2u(0u);
     var who = 0u;
+    var d = 0.0;
+    var normal = vec3f(0.0);
+    let maps = maps_at(first);
     if inside {
         let corner = load_words(identity, first).xy;
-        let motion = motion_of(corner);
+        let motion = motion_of(maps, picture, first, corner);
         who = corner.x;
-        let d = load_depth(depth, first);
-        let maps = maps_at(first);
+        d = load_depth(depth, first);
         if LOOKS_AROUND {
             found = textureLoad(reprojected, quad, 0).xy;
         } else {
@@ -218,7 +268,9 @@ fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
             let depths = vec4f(d, load_depth(depth, right), load_depth(depth, below), load_depth(depth, last));
             rate = requested_rate(quad, unpack4x8unorm(found.x), motion);
             // A level of 2 and more asks for blocks; they are found below.
-            rate &= surface_limit(picture, maps, first, last, ids, depths) | RATE_BLOCK;
+            let shown = shown_by(picture, maps, first, last, ids, depths);
+            normal = shown.normal;
+            rate &= shown.limit | RATE_BLOCK;
             rate = select(rate & 3u, rate, (rate & 3u) == 3u);
         }
     }
@@ -227,8 +279,10 @@ fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
         tile_who[at] = select(0xffffffffu, who, inside);
         tile_range[at] = vec2f(min(min(l.x, l.y), min(l.z, l.w)), max(max(l.x, l.y), max(l.z, l.w)));
         tile_rates[at] = rate;
+        tile_depth[at] = d;
+        tile_normal[at] = normal;
         workgroupBarrier();
-        rate = select(rate & 3u, 7u, is_block(local.xy));
+        rate = select(rate & 3u, 7u, is_block(picture, maps, quad, local.xy));
     } else {
         rate &= 3u;
     }

@@ -23,6 +23,8 @@ mod tests;
 #[cfg(test)]
 pub(crate) mod twin;
 mod view;
+#[cfg(test)]
+mod walls;
 
 #[cfg(test)]
 pub(crate) use passes::RatesUniform;

@@ -27,21 +27,25 @@ const SAME_DISTANCE: f32 = 0.02;
 struct EyeMaps {
     // View-space xy at distance 1 from normalized device coordinates: (ndc * xy + zw).
     view_from_ndc: vec4f,
-    // Distance in the frame before, of a point in view space.
+    // x, y and w of clip space in the frame before, of a point in view space.
+    x_before: vec4f,
+    y_before: vec4f,
     distance_before: vec4f,
 }
 
-fn distance_before_in(now: mat4x4f, previous: mat4x4f) -> vec4f {
-    return vec4f(previous[0].w, previous[1].w, previous[2].w, previous[3].w) * now;
+// A row of the matrix that takes points from view space to clip space in the frame before.
+fn row_before(view: u32, row: u32) -> vec4f {
+    let previous = frame.views[view].previous_clip_from_world;
+    return vec4f(previous[0][row], previous[1][row], previous[2][row], previous[3][row]) * frame.views[view].world_from_view;
 }
 
 fn maps_at(texel: vec2u) -> EyeMaps {
     let right = view_of(texel) != 0u;
-    let left_before = distance_before_in(frame.views[0].world_from_view, frame.views[0].previous_clip_from_world);
-    let right_before = distance_before_in(frame.views[1].world_from_view, frame.views[1].previous_clip_from_world);
     return EyeMaps(
         select(frame.views[0].view_from_ndc, frame.views[1].view_from_ndc, right),
-        select(left_before, right_before, right),
+        select(row_before(0u, 0u), row_before(1u, 0u), right),
+        select(row_before(0u, 1u), row_before(1u, 1u), right),
+        select(row_before(0u, 3u), row_before(1u, 3u), right),
     );
 }
 
@@ -95,8 +99,15 @@ fn reprojected_to(picture: Picture, maps: EyeMaps, texel: vec2u, who: u32, d: f3
     return found;
 }
 
-fn motion_of(who: vec2u) -> vec2f {
-    return select(unpack2x16float(who.y), vec2f(0.0), who.x == 0u);
+// Motion in pixels since the frame before. A background without end moves as the camera turns; with
+// parallel rays all of it is one direction.
+fn motion_of(maps: EyeMaps, picture: Picture, texel: vec2u, who: vec2u) -> vec2f {
+    let direction = vec4f(on_plane(maps, picture, texel), -1.0, 0.0);
+    let before = vec3f(dot(maps.x_before, direction), dot(maps.y_before, direction), dot(maps.distance_before, direction));
+    let now = ndc_of(vec2f(texel - picture.low) + 0.5);
+    let moved = (now - before.xy / before.z) * vec2f(0.5, -0.5) * frame.size;
+    let turned = select(vec2f(60000.0), clamp(moved, vec2f(-60000.0), vec2f(60000.0)), before.z > 0.0);
+    return select(unpack2x16float(who.y), select(turned, vec2f(0.0), frame.orthographic != 0u), who.x == 0u);
 }
 
 // The first of two passes, where contrast is looked for beyond the quad.
@@ -109,6 +120,8 @@ fn reproject(@builtin(global_invocation_id) id: vec3u) {
     }
     let who = load_words(identity, texel).xy;
     let d = load_depth(depth, texel);
-    let found = reprojected_to(picture, maps_at(texel), texel, who.x, d, motion_of(who));
+    let maps = maps_at(texel);
+    let motion = motion_of(maps, picture, texel, who);
+    let found = reprojected_to(picture, maps, texel, who.x, d, motion);
     textureStore(known, id.xy, vec4u(found, 0u, 0u));
 }

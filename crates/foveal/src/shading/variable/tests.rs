@@ -40,7 +40,7 @@ impl Film {
         texels(&t.known[usize::from(frames.is_multiple_of(2))])
     }
 
-    fn seen(&self) -> Seen {
+    pub(super) fn seen(&self) -> Seen {
         let s = self.renderer.settings();
         let g = &self.renderer.targets().gbuffer;
         Seen {
@@ -117,7 +117,7 @@ fn reprojection_rates_and_samples_equal_their_twins() {
                 let twin = twin::reproject(&seen, [&now, &previous], &before, &shown);
                 let off = known_otherwise(&reprojected, &twin);
                 assert!(off <= quads / 200, "{off} of {quads} known otherwise");
-                let twin = twin::rates(&settings, &seen, &now, &reprojected, probe);
+                let twin = twin::rates(&settings, &seen, [&now, &previous], &reprojected, probe);
                 let off = differing(&mask, &twin);
                 assert!(off <= quads / 400, "{off} of {quads} rates, {contrast:?}");
                 mask.iter().for_each(|m| rates_seen[*m as usize & 7] += 1);
@@ -158,7 +158,7 @@ fn foveation_and_content_combine_to_the_coarser_or_finer_rate() {
         film.draw(camera);
         let mask = film.mask();
         let known = reprojected(&film.known(2), &mask);
-        let twin = twin::rates(&settings, &film.seen(), camera, &known, Probe::NONE);
+        let twin = twin::rates(&settings, &film.seen(), [camera; 2], &known, Probe::NONE);
         assert!(differing(&mask, &twin) <= mask.len() / 400);
         assert!(mask.iter().any(|m| m & 7 == 0) && mask.iter().any(|m| m & 3 == 3));
     }

@@ -35,14 +35,42 @@ impl Seen {
         (self.size + 1) / 2
     }
 
-    fn motion(&self, texel: UVec2) -> Vec2 {
+    /// Motion in pixels; of the background as `[camera, previous]` see it, perspective cameras.
+    fn motion(&self, texel: UVec2, cameras: [&Camera; 2]) -> Vec2 {
         let [who, motion] = self.identity[self.at(texel)];
         if who == 0 {
-            return Vec2::ZERO;
+            return self.motion_of_background(texel, cameras);
         }
         Vec2::new(
             f32_of_half(motion as u16),
             f32_of_half((motion >> 16) as u16),
+        )
+    }
+
+    fn motion_of_background(&self, texel: UVec2, [camera, previous]: [&Camera; 2]) -> Vec2 {
+        let size = self.size.as_vec2();
+        let pixel = texel.as_vec2() + 0.5;
+        let direction = position_at(camera, size, pixel, 0.01) - camera.eye();
+        let before = previous.clip_from_world(size.x / size.y) * direction.extend(0.0);
+        if before.w <= 0.0 {
+            return Vec2::splat(60000.0);
+        }
+        let ndc = before.truncate().truncate() / before.w;
+        pixel - (ndc * Vec2::new(0.5, -0.5) + 0.5) * size
+    }
+
+    /// Position at a place relative to a texel, as far as the picture goes.
+    fn position(&self, camera: &Camera, texel: UVec2, offset: IVec2) -> Vec3 {
+        let last = self.size.as_ivec2() - 1;
+        let texel = (texel.as_ivec2() + offset)
+            .clamp(IVec2::ZERO, last)
+            .as_uvec2();
+        let pixel = texel.as_vec2() + 0.5;
+        position_at(
+            camera,
+            self.size.as_vec2(),
+            pixel,
+            self.depth[self.at(texel)],
         )
     }
 }
@@ -88,7 +116,8 @@ pub(super) fn reproject(
             }
             let place = (distance.to_bits() + 0x8000) & 0xffff_0000 | who & INSTANCE;
             let mut found = [0, place];
-            let then = ((texel.as_vec2() + 1.0 - seen.motion(texel)) * 0.5).floor();
+            let motion = seen.motion(texel, [camera, previous]);
+            let then = ((texel.as_vec2() + 1.0 - motion) * 0.5).floor();
             if let Some(then_at) = texel_of(then.as_ivec2(), quads) {
                 let [lumas, old] = before[then_at];
                 let off = (distance_of(old) - expected).abs();
@@ -166,35 +195,52 @@ fn contrast(kind: Contrast, known: &[[u32; 2]], quads: UVec2, quad: UVec2) -> Ve
     }
 }
 
+fn are_parallel(a: Vec3, b: Vec3) -> bool {
+    a.dot(b) >= FLAT * a.length() * b.length()
+}
+
 /// The coarsest rate at which a quad's pixels show one surface.
 fn surface_limit(seen: &Seen, camera: &Camera, first: UVec2) -> u32 {
     let offsets = [UVec2::ZERO, UVec2::X, UVec2::Y, UVec2::ONE];
     let texels = offsets.map(|o| (first + o).min(seen.size - 1));
     let who = texels.map(|t| seen.identity[seen.at(t)][0]);
-    let wide = u32::from(who[0] == who[1] && who[2] == who[3]);
-    let tall = u32::from(who[0] == who[2] && who[1] == who[3]);
-    let limit = wide | tall << 1;
-    if limit == 0 || texels[3] != first + 1 || who[0] == 0 || who[3] == 0 {
-        return limit;
+    let wide = who[0] == who[1] && who[2] == who[3];
+    let tall = who[0] == who[2] && who[1] == who[3];
+    if texels[3] != first + 1 || who[0] == 0 || who[3] == 0 {
+        return u32::from(wide) | u32::from(tall) << 1;
     }
-    let [p, q, r, s] = texels.map(|t| {
-        let pixel = t.as_vec2() + 0.5;
-        position_at(camera, seen.size.as_vec2(), pixel, seen.depth[seen.at(t)])
-    });
+    let at = |x, y| seen.position(camera, first, IVec2::new(x, y));
+    let [p, q, r, s] = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
     let upper = (q - p).cross(r - p);
-    let lower = (r - s).cross(q - s);
-    if upper.dot(lower) >= FLAT * upper.length() * lower.length() {
-        limit
-    } else {
-        0
+    let flat = are_parallel(upper, (r - s).cross(q - s));
+    let across = are_parallel(upper, (p - at(-1, 0)).cross(r - p))
+        || are_parallel(upper, (at(2, 0) - q).cross(s - q));
+    let down = are_parallel(upper, (q - p).cross(p - at(0, -1)))
+        || are_parallel(upper, (s - r).cross(at(0, 2) - r));
+    u32::from(wide && flat && across) | u32::from(tall && flat && down) << 1
+}
+
+/// Whether the quads of a block, whose first pixel is given, lie in one plane.
+fn block_is_flat(seen: &Seen, camera: &Camera, first: UVec2) -> bool {
+    if seen.identity[seen.at(first)][0] == 0 {
+        return true;
     }
+    let plane = |x, y, side| {
+        let at = |dx, dy| seen.position(camera, first, IVec2::new(x + dx * side, y + dy * side));
+        (at(1, 0) - at(0, 0)).cross(at(0, 1) - at(0, 0))
+    };
+    let own = plane(0, 0, 1);
+    let of_block = [plane(0, 0, 2), plane(2, 2, -2)];
+    let of_quads = [plane(2, 0, 1), plane(0, 2, 1), plane(2, 2, 1)];
+    let mut all = of_block.into_iter().chain(of_quads);
+    all.all(|other| are_parallel(own, other))
 }
 
 /// The mask that follows from what is known.
 pub(super) fn rates(
     settings: &Settings,
     seen: &Seen,
-    camera: &Camera,
+    [camera, previous]: [&Camera; 2],
     known: &[[u32; 2]],
     probe: Probe,
 ) -> Vec<u32> {
@@ -226,7 +272,7 @@ pub(super) fn rates(
                 }
                 RateSource::Constant => of_level(request.constant_level),
                 RateSource::Image | RateSource::Lens | RateSource::Content => {
-                    let motion = seen.motion(quad * 2).length();
+                    let motion = seen.motion(quad * 2, [camera, previous]).length();
                     let threshold = settings.variable.threshold
                         * (1.0 + settings.variable.velocity_gain * motion);
                     let c = contrast(settings.variable.contrast, known, quads, quad);
@@ -266,7 +312,8 @@ pub(super) fn rates(
                 && block.len() == 4
                 && block.iter().all(|&i| who(i) == who(block[0]))
                 && (together & 4 != 0 || together == 3 && alike)
-                && together & 3 == 3;
+                && together & 3 == 3
+                && block_is_flat(seen, camera, first * 2);
             if is_block {
                 7 | notes
             } else {
