@@ -122,7 +122,7 @@ pub struct VariableStats {
     pub saved_ms: f64,
     /// What is saved less mask and reprojection.
     pub net_ms: f64,
-    /// A sentence where it has turned itself off; else empty.
+    /// A sentence where it has turned itself off, or where ssaa leaves it nothing to do; else empty.
     pub notice: String,
 }
 

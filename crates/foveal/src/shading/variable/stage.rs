@@ -8,7 +8,7 @@ use crate::recorder::Recorder;
 use crate::shading::balance::{Balance, Compared, RatePlan, sum_ms};
 use crate::stereo::{Eye, EyeLayout};
 use crate::targets::Targets;
-use crate::{Settings, Timing, VariableStats};
+use crate::{Antialiasing, Settings, Timing, VariableStats};
 use foveal_scene::Camera;
 
 /// Frames before the first comparison.
@@ -16,6 +16,9 @@ const UNCOMPARED: u32 = 3;
 /// Passes that find rates and samples.
 const MASK: &str = "rate mask";
 const REPROJECTION: &str = "reprojection";
+
+/// What is said where anti-aliasing leaves nothing to shade.
+const COVERED: &str = "variable shading is off: ssaa shades every sub-sample";
 
 /// All of variable shading that outlives a frame.
 #[derive(Debug)]
@@ -25,6 +28,8 @@ pub(crate) struct VariableStage {
     probes: Probes,
     balance: Balance,
     costs: VariableStats,
+    /// Anti-aliasing shades every sub-sample: nothing at rates would be seen.
+    is_covered: bool,
     /// The camera of the frame that the targets know.
     last: Option<Camera>,
     /// Frames since the targets knew nothing.
@@ -38,16 +43,19 @@ impl VariableStage {
         frame_layout: &wgpu::BindGroupLayout,
         input_layout: &wgpu::BindGroupLayout,
     ) -> Self {
-        let forced = settings.rate.force;
+        let view = RateView::new(gpu, settings.picture.view, frame_layout);
+        // The view shows the frame's own rates.
+        let forced = settings.rate.force || view.is_some();
         // As with coarse shading: what is forced has no use for comparisons, and benches would time
         // them.
         let compares = gpu.tells_times() && !forced;
         Self {
             passes: RatePasses::new(gpu, settings, frame_layout, input_layout),
-            view: RateView::new(gpu, settings.picture.view, frame_layout),
+            view,
             probes: Probes::default(),
             balance: Balance::new(forced, UNCOMPARED, compares),
             costs: VariableStats::default(),
+            is_covered: settings.antialiasing.mode == Antialiasing::Ssaa,
             last: None,
             frame: 0,
         }
@@ -71,7 +79,10 @@ impl VariableStage {
 
     /// What the next frame does.
     pub(crate) fn plan(&mut self) -> RatePlan {
-        let plan = self.balance.plan();
+        let plan = match self.is_covered {
+            true => RatePlan::default(),
+            false => self.balance.plan(),
+        };
         if !plan.active {
             self.forget();
         }
@@ -170,8 +181,12 @@ impl VariableStage {
             costs.saved_ms = compared.full_ms - compared.rated_ms;
             costs.net_ms = compared.net_ms();
         }
+        let notice = match self.is_covered {
+            true => COVERED.to_owned(),
+            false => self.balance.notice("variable shading"),
+        };
         VariableStats {
-            notice: self.balance.notice("variable shading"),
+            notice,
             ..costs.clone()
         }
     }

@@ -10,7 +10,10 @@ use crate::gpu::read_buffer;
 use crate::shading::twin::{shade, unpack_surface};
 pub(super) use crate::testing::{Film, shifted};
 use crate::testing::{f32_of_half, gpu, picture, small, texels};
-use crate::{Contrast, DebugView, Geometry, RateCombine, RateSource, RateStage, Settings, Shading};
+use crate::{
+    Antialiasing, Contrast, DebugView, Geometry, RateCombine, RateSource, RateStage, Settings,
+    Shading,
+};
 
 /// Odd sizes; the last is smaller than a quad.
 const SIZES: [(u32, u32); 3] = [(157, 101), (64, 48), (1, 1)];
@@ -366,4 +369,47 @@ fn views_of_the_rates_do_not_change_the_rates() {
         film.mask()
     });
     assert!(masks.iter().all(|m| *m == masks[0]));
+}
+
+#[test]
+fn views_of_the_rates_are_of_each_frame_whatever_rates_cost() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    let compares = |view| {
+        let settings = variable(SIZES[1]).with(|s| {
+            s.rate.force = false;
+            s.picture.view = view;
+        });
+        let mut film = Film::new(&scene, &settings);
+        (0..6).any(|_| {
+            let passes = film.draw(camera).gpu_ms;
+            passes.iter().any(|pass| pass.name == "full shading")
+        })
+    };
+    assert!(compares(DebugView::Final), "rates are weighed");
+    for view in [DebugView::Rate, DebugView::Shaded, DebugView::Unknown] {
+        assert!(!compares(view), "{view:?} hangs on times");
+    }
+}
+
+#[test]
+fn where_every_sub_sample_is_shaded_no_rates_are_found() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
+        let settings = variable(SIZES[1]).with(|s| {
+            s.antialiasing.mode = Antialiasing::Ssaa;
+            s.geometry.path = geometry;
+        });
+        let full = settings.clone().with(|s| s.shading.mode = Shading::Full);
+        let [mut film, mut full] = [settings, full].map(|s| Film::new(&scene, &s));
+        for _ in 0..3 {
+            let (stats, of_full) = (film.draw(camera), full.draw(camera));
+            assert!(stats.gpu_ms.iter().all(|pass| pass.name != "rate mask"));
+            assert_eq!(stats.shaded_samples, of_full.shaded_samples);
+            assert!(picture(&film.renderer) == picture(&full.renderer));
+            let variable = stats.variable.unwrap();
+            assert!(!variable.active && variable.notice.contains("ssaa"));
+        }
+    }
 }
