@@ -35,6 +35,8 @@ mod mend;
 mod plan;
 mod results;
 #[cfg(test)]
+mod room_tests;
+#[cfg(test)]
 mod settings_tests;
 mod stages;
 mod submit;
@@ -498,12 +500,14 @@ impl Renderer {
         self.torn(drawn)?;
         let waited = in_flight.wait(&self.gpu).await;
         let (submitted, counts, frame_ms) = self.torn(waited)?;
-        // What was too small for the frame grows now.
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let gpu_ms = self.timer.collect(&self.gpu);
         let stats = self.figures(submitted, &counts, gpu_ms, frame_ms);
-        let grown = trap.finish().await;
-        self.torn(grown.map(|()| stats))
+        let told = trap.finish().await;
+        self.torn(told)?;
+        // What was too small for the frame grows now.
+        self.make_room().await?;
+        Ok(stats)
     }
 
     /// Draws one frame into the host's texture, stretched to its size, and waits for nothing. Given
@@ -530,7 +534,9 @@ impl Renderer {
         }
         // What a frame that failed has left in the targets is not carried on to the next one.
         let drawn = trap.finish().await;
-        self.torn(drawn.map(|()| finished))
+        self.torn(drawn)?;
+        self.make_room().await?;
+        Ok(finished)
     }
 
     /// Wakes the threads that will soon have to rasterize occluders.

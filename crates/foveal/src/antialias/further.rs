@@ -38,11 +38,16 @@ impl FurtherTargets {
         u64::from(width) * u64::from(height.div_ceil(4).max((2 * height).min(128)))
     }
 
+    /// Rows of the target that has room for so many entries, as far as the device's textures go.
+    pub(super) fn rows(limits: &wgpu::Limits, width: u32, room: u64) -> u32 {
+        let most = limits.max_texture_dimension_2d;
+        room.div_ceil(width.into()).clamp(1, most.into()) as u32
+    }
+
     /// For a picture of this size, with room for at least so many entries, as far as the device's
     /// textures go.
     pub(super) fn new(gpu: &Gpu, width: u32, height: u32, room: u64) -> Self {
-        let most = gpu.device.limits().max_texture_dimension_2d;
-        let rows = room.div_ceil(width.into()).clamp(1, most.into()) as u32;
+        let rows = Self::rows(&gpu.device.limits(), width, room);
         let size = (width, rows);
         let written = wgpu::TextureUsages::STORAGE_BINDING;
         let none = wgpu::TextureUsages::empty();

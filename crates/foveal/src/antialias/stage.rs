@@ -260,18 +260,17 @@ impl AntialiasStage {
         pass.draw(0..3, 0..1);
     }
 
-    /// What the frame shaded after which the targets' queue held these bytes.
-    pub(crate) fn counts(&self, bytes: &[u8], targets: &Targets) -> EdgeCounts {
+    /// What the frame of so many pixels shaded after which the targets' queue held these bytes.
+    pub(crate) fn counts(&self, bytes: &[u8], targets: &Targets, pixels: u64) -> EdgeCounts {
         let (Some(t), Ok(queue)) = (
             &targets.samples,
             bytemuck::try_pod_read_unaligned::<QueueUniform>(bytes),
         ) else {
             return EdgeCounts::default();
         };
-        let size = targets.picture_view.texture().size();
-        let pixels = u64::from(size.width) * u64::from(size.height);
         EdgeCounts {
-            edge_pixels: u64::from(queue.edge_pixels),
+            // Columns between the eyes' pictures may be listed, too.
+            edge_pixels: u64::from(queue.edge_pixels).min(pixels),
             entries: u64::from(queue.total),
             // The device's own sum may have wrapped around.
             evaluations: match self.edges {

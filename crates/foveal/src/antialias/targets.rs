@@ -73,6 +73,10 @@ pub(crate) struct SampleTargets {
     bytes: u64,
     /// Rows of a band.
     rows: u32,
+    /// Entries that a frame wanted and had no room for; 0: none.
+    wanted: u64,
+    /// The least room that the device had no memory for.
+    refused: u64,
 }
 
 impl SampleTargets {
@@ -129,11 +133,30 @@ impl SampleTargets {
         self.entries.size() / ENTRY_BYTES
     }
 
-    /// Targets with room for `wanted` entries and some more, where the device can have them and
-    /// these are fewer.
-    pub(crate) fn grown(&self, gpu: &Gpu, settings: &Settings, wanted: u64) -> Option<Self> {
-        let grown = Self::with_room(gpu, settings, self.rows, wanted + wanted / 4);
-        (grown.room() > self.room()).then_some(grown.with_blended_as(self, gpu))
+    /// Notes how many entries a frame wanted; gives how many of them had no room.
+    pub(crate) fn note_wanted(&mut self, entries: u64) -> u64 {
+        let left_out = entries.saturating_sub(self.room());
+        self.wanted = if left_out > 0 { entries } else { 0 };
+        left_out
+    }
+
+    /// The room to make for the entries that were wanted and some more, where the device can have
+    /// it. That is asked once.
+    pub(crate) fn room_to_make(&mut self, gpu: &Gpu, settings: &Settings) -> Option<u64> {
+        let wanted = std::mem::take(&mut self.wanted);
+        let room = possible_room(&gpu.device.limits(), settings, wanted + wanted / 4);
+        (wanted > 0 && room > self.room() && room < self.refused).then_some(room)
+    }
+
+    /// The device has no memory for so much room.
+    pub(crate) fn refuse(&mut self, room: u64) {
+        self.refused = room;
+    }
+
+    /// The same targets with more room.
+    pub(crate) fn grown(&self, gpu: &Gpu, settings: &Settings, room: u64) -> Self {
+        let grown = Self::with_room(gpu, settings, self.rows, room);
+        grown.with_blended_as(self, gpu)
     }
 
     /// Targets that blended surfaces have a place in too, if these have none.
@@ -196,8 +219,8 @@ impl SampleTargets {
             .write_buffer(&empty_queue, 0, bytemuck::bytes_of(&QueueUniform::EMPTY));
         let pixels = u64::from(width) * u64::from(height);
         let further = by_triangles(settings).then(|| FurtherTargets::new(gpu, width, height, room));
-        let room = further.as_ref().map_or(room, FurtherTargets::entries);
-        let entry_bytes = ENTRY_BYTES * room.min(most_entries(&gpu.device.limits()));
+        let room = possible_room(&gpu.device.limits(), settings, room);
+        let entry_bytes = ENTRY_BYTES * room;
         Self {
             bands: bands.collect(),
             samples: match further {
@@ -218,6 +241,8 @@ impl SampleTargets {
             blended: None,
             pattern,
             rows,
+            wanted: 0,
+            refused: u64::MAX,
         }
     }
 
@@ -252,6 +277,17 @@ impl SampleTargets {
 /// kept.
 fn bytes_per_sample(settings: &Settings) -> u64 {
     if by_triangles(settings) { 16 } else { 28 }
+}
+
+/// Entries that there is room for where at least `room` are asked for, as far as a device goes.
+fn possible_room(limits: &wgpu::Limits, settings: &Settings, room: u64) -> u64 {
+    let (width, _) = EyeLayout::of(settings).target_size();
+    let room = if by_triangles(settings) {
+        u64::from(width) * u64::from(FurtherTargets::rows(limits, width, room))
+    } else {
+        room
+    };
+    room.min(most_entries(limits))
 }
 
 /// Entries that a queue can have on a device.

@@ -4,7 +4,7 @@ use super::in_flight::{Counts, InFlight};
 use super::{Renderer, Stages};
 use crate::antialias::AntialiasStage;
 use crate::culling::CullingCounts;
-use crate::gpu::{Arriving, CpuTimer};
+use crate::gpu::{Arriving, CpuTimer, ErrorTrap};
 use crate::output::Upscale;
 use crate::shading::{CountPass, HistoryStage};
 use crate::stereo::EyeLayout;
@@ -154,23 +154,16 @@ impl Renderer {
         };
         let mut edge_fraction = 0.0;
         let mut surfaces_left_out = 0;
-        let mut more_samples = None;
         if let (Some(antialias), Some(bytes)) = (&stages.antialias, &counts.edges) {
-            let counts = AntialiasStage::counts(antialias, bytes, &stages.targets);
+            let counts = AntialiasStage::counts(antialias, bytes, &stages.targets, pixels);
             if !antialias.needs_ordinary() && coarse.is_none() {
                 shaded_samples = 0;
             }
             shaded_samples += u64::from(lit) * counts.evaluations;
             edge_fraction = counts.edge_pixels as f64 / pixels as f64;
-            if let Some(samples) = &stages.targets.samples {
-                surfaces_left_out = counts.entries.saturating_sub(samples.room());
-                if surfaces_left_out > 0 {
-                    more_samples = samples.grown(&self.gpu, &stages.settings, counts.entries);
-                }
+            if let Some(samples) = &mut self.stages.targets.samples {
+                surfaces_left_out = samples.note_wanted(counts.entries);
             }
-        }
-        if more_samples.is_some() {
-            self.stages.targets.samples = more_samples;
         }
         FrameStats {
             shaded_samples,
@@ -182,6 +175,28 @@ impl Renderer {
             frame_ms,
             ..stats
         }
+    }
+
+    /// Makes the room that anti-aliasing lacked in a frame. Without memory for it all stays as it is:
+    /// that frame was drawn, and so are those to come.
+    pub(super) async fn make_room(&mut self) -> Result<(), Error> {
+        let Stages {
+            settings, targets, ..
+        } = &mut self.stages;
+        let Some(samples) = &mut targets.samples else {
+            return Ok(());
+        };
+        let Some(room) = samples.room_to_make(&self.gpu, settings) else {
+            return Ok(());
+        };
+        let trap = ErrorTrap::new(&self.gpu, "making room for edges");
+        let grown = samples.grown(&self.gpu, settings, room);
+        match trap.finish().await {
+            Ok(()) => *samples = grown,
+            Err(Error::OutOfMemory { .. }) => samples.refuse(room),
+            error => return self.torn(error),
+        }
+        Ok(())
     }
 
     /// What coarse shading did; tells the choice of the backend what the passes took.
