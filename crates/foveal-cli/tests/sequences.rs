@@ -62,6 +62,40 @@ fn a_part_of_a_sequence_is_the_same_as_in_the_whole() {
     }
 }
 
+/// A mesh of strips, narrower than a pixel, that lie in turn before and behind.
+fn strips(folder: &Path) {
+    let mut text = String::new();
+    for i in 0..256u16 {
+        let [left, right] = [i, i + 1].map(|i| f32::from(i) * 0.005);
+        let z = f32::from(i % 2) * -0.5;
+        for (x, y) in [(left, 0.0), (right, 0.0), (right, 5.2), (left, 5.2)] {
+            text += &format!("v {x} {y} {z}\n");
+        }
+        let first = 4 * i + 1;
+        let [second, third, last] = [1, 2, 3].map(|n| first + n);
+        text += &format!("f {first} {second} {third} {last}\n");
+    }
+    fs::write(folder.join("strips.obj"), text).unwrap();
+}
+
+#[test]
+fn a_picture_has_all_surfaces_of_its_edges_whether_or_not_others_were_drawn_before() {
+    let folder = folder();
+    let here = folder.path();
+    strips(here);
+    let render = |output: &str, more: &[&str]| {
+        let words = "render strips.obj --size 128x520 --aa msaa --samples 16 \
+                     --geometry visibility --stats stats.json -o";
+        let words: Vec<&str> = words.split_whitespace().chain([output]).collect();
+        succeed(here, &[&words[..], more].concat());
+        let stats: serde_json::Value = serde_json::from_slice(&bytes(here, "stats.json")).unwrap();
+        assert_eq!(stats["frames"][0]["surfaces_left_out"], 0, "{output}");
+    };
+    render("first.png", &[]);
+    render("later.png", &["--warmup", "3"]);
+    assert!(bytes(here, "first.png") == bytes(here, "later.png"));
+}
+
 #[test]
 fn a_single_picture_is_the_frame_of_its_moment() {
     let folder = folder();

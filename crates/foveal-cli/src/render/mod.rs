@@ -305,9 +305,18 @@ impl Written {
     }
 }
 
-/// Draws one frame of the sequence.
+/// Draws one frame of the sequence: again where anti-aliasing left surfaces out in want of room,
+/// which it has from then on, so that the picture does not depend on the frames before.
 fn draw(drawing: &mut Drawing, job: &FrameJob) -> anyhow::Result<FrameStats> {
-    drawing.draw_moment(job.time_s, job.previous_time_s)
+    let mut figures = drawing.draw_moment(job.time_s, job.previous_time_s)?;
+    while figures.surfaces_left_out > 0 && !follows_on(drawing.renderer.settings()) {
+        let before = figures.surfaces_left_out;
+        figures = drawing.draw_moment(job.time_s, job.previous_time_s)?;
+        if figures.surfaces_left_out >= before {
+            break;
+        }
+    }
+    Ok(figures)
 }
 
 /// Draws and writes each frame; gives the figures and when the first picture was on the disk.
