@@ -1,7 +1,7 @@
 //! What the colours of a view mean.
 
 use egui::{Color32, CornerRadius, RichText, Sense, Vec2};
-use foveal::DebugView;
+use foveal::{DebugView, Settings, Shading};
 
 use crate::look;
 
@@ -18,17 +18,36 @@ fn level_color(level: u8) -> Color32 {
     Color32::from_rgb(channel(0.0), channel(2.0), channel(1.0))
 }
 
+/// The colours that `variable/view.wgsl` mixes into the picture, and pixels across and down of a
+/// sample.
+const RATES: [(Color32, &str); 5] = [
+    (Color32::BLACK, "1 x 1"),
+    (Color32::from_rgb(0, 255, 0), "2 x 1"),
+    (Color32::from_rgb(255, 0, 0), "1 x 2"),
+    (Color32::from_rgb(0, 0, 255), "2 x 2"),
+    (Color32::WHITE, "4 x 4"),
+];
+
 /// Squares of colour with their meaning.
 type Entries = Vec<(Color32, String)>;
 
-fn entries(view: DebugView, coarsest: u8) -> Entries {
+fn entries(settings: &Settings) -> Entries {
     let gray = Color32::from_gray;
     let named = |list: &[(Color32, &str)]| {
         let own = |&(color, text): &(Color32, &str)| (color, text.to_owned());
         list.iter().map(own).collect()
     };
-    match view {
-        DebugView::Rate | DebugView::Blocks => (0..=coarsest)
+    let variable = settings.shading.mode == Shading::Variable;
+    match settings.picture.view {
+        DebugView::Rate if variable => {
+            let blocks = usize::from(settings.variable.blocks_4x4);
+            named(&RATES[..4 + blocks])
+        }
+        DebugView::Unknown => named(&[
+            (Color32::from_rgb(255, 0, 0), "nothing known"),
+            (Color32::from_rgb(0, 255, 0), "measured again"),
+        ]),
+        DebugView::Rate | DebugView::Blocks => (0..=settings.coarse.coarsest_level)
             .map(|level| {
                 let side = 1u32 << level;
                 (level_color(level), format!("{side} x {side}"))
@@ -65,8 +84,8 @@ fn entries(view: DebugView, coarsest: u8) -> Entries {
 }
 
 /// Of the picture's view.
-pub(crate) fn of_view(ui: &mut egui::Ui, view: DebugView, coarsest: u8) {
-    show(ui, &entries(view, coarsest));
+pub(crate) fn of_view(ui: &mut egui::Ui, settings: &Settings) {
+    show(ui, &entries(settings));
 }
 
 /// Of the boxes.
@@ -112,5 +131,38 @@ mod tests {
                 assert!(sum > 90, "{a:?} and {b:?}");
             }
         }
+    }
+
+    #[test]
+    fn variable_rates_have_the_colours_of_their_view() {
+        let settings = Settings::default().with(|s| {
+            s.shading.mode = Shading::Variable;
+            s.picture.view = DebugView::Rate;
+            s.variable.blocks_4x4 = true;
+        });
+        // As `color_of` in `variable/view.wgsl`: red for tall samples, green for wide ones.
+        let color_of = |across: u32, down: u32| {
+            let channel = |is: bool| if is { 255 } else { 0 };
+            match (across, down) {
+                (4, 4) => Color32::WHITE,
+                size => Color32::from_rgb(
+                    channel(size == (1, 2)),
+                    channel(size == (2, 1)),
+                    channel(size == (2, 2)),
+                ),
+            }
+        };
+        let all = entries(&settings);
+        assert_eq!(all.len(), 5);
+        for (color, text) in all {
+            let (across, down) = text.split_once(" x ").expect("a sample's size");
+            let [across, down] = [across, down].map(|n| n.parse().expect("a number"));
+            assert_eq!(color, color_of(across, down), "{text}");
+        }
+        let quads = settings.clone().with(|s| s.variable.blocks_4x4 = false);
+        assert_eq!(entries(&quads).len(), 4);
+        let coarse = settings.with(|s| s.shading.mode = Shading::Coarse);
+        assert_eq!(entries(&coarse)[0].1, "1 x 1");
+        assert_eq!(entries(&coarse)[0].0, level_color(0));
     }
 }

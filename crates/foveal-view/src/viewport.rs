@@ -222,7 +222,7 @@ fn legends(app: &App, ui: &mut egui::Ui, place: Rect) {
             if app.display.boxes {
                 legend::of_boxes(ui);
             }
-            legend::of_view(ui, view, app.settings.coarse.coarsest_level);
+            legend::of_view(ui, &app.settings);
         });
 }
 
