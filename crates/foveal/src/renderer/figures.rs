@@ -177,8 +177,8 @@ impl Renderer {
         }
     }
 
-    /// Makes the room that anti-aliasing lacked in a frame. Without memory for it all stays as it is:
-    /// that frame was drawn, and so are those to come.
+    /// Makes the room that anti-aliasing lacked in a frame. Without memory for it all stays as it
+    /// is: that frame was drawn, and so are those to come.
     pub(super) async fn make_room(&mut self) -> Result<(), Error> {
         let Stages {
             settings, targets, ..
