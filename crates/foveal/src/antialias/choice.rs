@@ -1,7 +1,7 @@
 //! Which way of anti-aliasing settings ask for.
 
 use super::pattern::Pattern;
-use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings, Shading};
+use crate::{Antialiasing, Composite, EdgeTest, Geometry, SamplePattern, Settings, Shading};
 
 /// Whether the settings ask for this way.
 pub(crate) fn by_triangles(settings: &Settings) -> bool {
@@ -11,10 +11,18 @@ pub(crate) fn by_triangles(settings: &Settings) -> bool {
         && settings.antialiasing.pattern == SamplePattern::Grid
 }
 
+/// Whether every pixel's colour is a mean of all the surfaces that it shows. Coarse shading leaves the
+/// pixels of its blocks alone where samples hold colours, and where sub-samples alone would be seen.
+pub(crate) fn averages_all(settings: &Settings) -> bool {
+    settings.shading.mode != Shading::Coarse
+        || (settings.coarse.composite == Composite::Light
+            && settings.antialiasing.mode == Antialiasing::Msaa)
+}
+
 /// Whether lobes are added to pixels in which their surfaces are black: where the pixel's colour is a
-/// mean of all its surfaces. Where it is that of the largest, at reduced rates, they are laid over.
+/// mean of all its surfaces. Where it is that of the largest they are laid over.
 pub(crate) fn adds_lobes(settings: &Settings) -> bool {
-    settings.antialiasing.mode != Antialiasing::None && settings.shading.mode == Shading::Full
+    settings.antialiasing.mode != Antialiasing::None && averages_all(settings)
 }
 
 /// Side of what a pixel's textures are filtered over, in pixels, where its material is evaluated

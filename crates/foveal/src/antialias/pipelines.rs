@@ -4,8 +4,9 @@ use crate::environment::environment_constants;
 use crate::geometry::{DEPTH_FORMAT, IDENTITY_FORMAT, SURFACE_FORMAT};
 use crate::gpu::{Gpu, bind_group_layout, sampled, storage_read, storage_write, uniform};
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
-use crate::{Antialiasing, EdgeTest, Settings, Shading, shader};
+use crate::{Antialiasing, EdgeTest, Settings, shader};
 
+use super::choice::averages_all;
 use super::pattern::Pattern;
 use super::targets::TALLY_FORMAT;
 
@@ -71,7 +72,7 @@ impl AntialiasPipelines {
             &[uniform(), uint, read, read, write],
         );
         let combine_layout = layout("combination", compute, &[read, read, write, float, uint]);
-        let coarse = f64::from(u8::from(settings.shading.mode == Shading::Coarse));
+        let coarse = f64::from(u8::from(!averages_all(settings)));
         let radiance = wgpu::BindingType::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
             format: RADIANCE_FORMAT,

@@ -335,8 +335,8 @@ fn within_surfaces_msaa_is_near_to_ssaa_by_gbuffer_and_nearer_than_none_over_a_v
 }
 
 #[test]
-fn with_a_rate_map_pixels_of_level_0_are_antialiased_and_the_others_coarse() {
-    use crate::{RateSource, RefineEdges, Shading};
+fn with_samples_of_colour_pixels_of_level_0_are_antialiased_and_the_others_coarse() {
+    use crate::{Composite, RateSource, RefineEdges, Shading};
     for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
         let fine =
             settings(Antialiasing::Msaa, EdgeTest::Surface, 4).with(|s| s.geometry.path = geometry);
@@ -344,6 +344,7 @@ fn with_a_rate_map_pixels_of_level_0_are_antialiased_and_the_others_coarse() {
             s.shading.mode = Shading::Coarse;
             s.coarse.source = RateSource::Radii;
             s.coarse.refine_edges = RefineEdges::Off;
+            s.coarse.composite = Composite::Smooth;
         });
         assert_fine_where_the_level_is_0(&fine, &coarse);
     }

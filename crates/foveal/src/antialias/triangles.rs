@@ -18,8 +18,9 @@ use crate::scene::SceneOnGpu;
 use crate::shader::Screen;
 use crate::shading::lighting_constants;
 use crate::targets::Targets;
-use crate::{Settings, Shading, shader};
+use crate::{Settings, shader};
 
+use super::choice::averages_all;
 use super::pattern::{Band, Pattern};
 use super::targets::{ALL_GROUPS, SampleTargets, TALLY_FORMAT};
 
@@ -81,7 +82,7 @@ impl TriangleStage {
         );
         let lighting = lighting_constants(gpu, settings);
         let [count, side] = Pattern::of(settings).constants();
-        let coarse = f64::from(u8::from(settings.shading.mode == Shading::Coarse));
+        let coarse = f64::from(u8::from(!averages_all(settings)));
         let geometry = geometry_layout(gpu);
         let sorting = |label, shader, entry, group: &wgpu::BindGroupLayout| {
             shader::compute(

@@ -11,7 +11,7 @@ use super::twin::{Before, Fate, Seen};
 use crate::gpu::read_level;
 use crate::stereo::EyeLayout;
 use crate::testing::{Film, f32_of_half, gpu, rendered, shifted, small, texels};
-use crate::{FrameStats, Geometry, RateSource, Renderer, Settings, Shading, Stereo};
+use crate::{Antialiasing, FrameStats, Geometry, RateSource, Renderer, Settings, Shading, Stereo};
 
 const SIZE: (u32, u32) = (157, 101);
 
@@ -107,6 +107,11 @@ fn at_rest_the_picture_becomes_full_shadings_and_nothing_more_is_shaded() {
         kept(),
         kept().with(|s| s.geometry.path = Geometry::Visibility),
         kept().with(|s| s.stereo.mode = Stereo::Instanced),
+        kept().with(|s| s.antialiasing.mode = Antialiasing::Msaa),
+        kept().with(|s| {
+            s.antialiasing.mode = Antialiasing::Msaa;
+            s.geometry.path = Geometry::Visibility;
+        }),
     ] {
         let mut film = Film::new(&scene, &settings);
         for frame in 0..4 {
@@ -121,10 +126,13 @@ fn at_rest_the_picture_becomes_full_shadings_and_nothing_more_is_shaded() {
         }
         assert!(sum <= 1.0 + 1e-9 && sum > 0.5, "each pixel once: {sum}");
         let Settings {
-            geometry, stereo, ..
+            geometry,
+            stereo,
+            antialiasing,
+            ..
         } = &settings;
         let off = differing(&seen(&film.renderer), &full);
-        assert_eq!(off, 0, "{geometry:?} {stereo:?}");
+        assert_eq!(off, 0, "{geometry:?} {stereo:?} {antialiasing:?}");
         for _ in 0..2 {
             assert_eq!(shaded(&film.draw(&there)), 0.0);
             assert_eq!(differing(&seen(&film.renderer), &full), 0);
@@ -307,7 +315,7 @@ fn another_image_of_rates_counts_at_rest() {
     let camera = &scene.cameras[0];
     let settings = kept().with(|s| {
         s.coarse.source = RateSource::Image;
-        s.antialiasing.mode = crate::Antialiasing::Msaa;
+        s.antialiasing.mode = Antialiasing::Msaa;
     });
     let image = |luma| crate::RateImage::new(1, 1, vec![luma]).expect("a pixel");
     let mut film = Film::new(&scene, &settings);

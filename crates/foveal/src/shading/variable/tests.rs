@@ -413,3 +413,20 @@ fn where_every_sub_sample_is_shaded_no_rates_are_found() {
         }
     }
 }
+
+#[test]
+fn with_msaa_lobes_are_added_as_in_full_shading() {
+    let scene = generate::by_name("lobes").expect("a scene of that name");
+    let camera = &scene.cameras[0];
+    let every = variable(SIZES[1]).with(|s| {
+        s.antialiasing.mode = Antialiasing::Msaa;
+        s.coarse.source = RateSource::Constant;
+        s.coarse.constant_level = 0;
+    });
+    let full = every.clone().with(|s| s.shading.mode = Shading::Full);
+    let [mut film, mut full] = [every, full].map(|s| Film::new(&scene, &s));
+    film.draw(camera);
+    film.draw(camera);
+    full.draw(camera);
+    assert!(picture(&film.renderer) == picture(&full.renderer));
+}
