@@ -174,7 +174,7 @@ settings! {
     "Shading" shading: ShadingSettings {
         /// Number of lighting samples: full takes one per pixel (the reference), coarse one per
         /// block of pixels, larger away from the gaze, variable one per 1x1 to 2x2 pixels as
-        /// the content allows.
+        /// the rate's source allows, which content makes the picture itself.
         shading => mode: Shading = Shading::default(), "Mode", Kind::choice::<Shading>();
     }
     /// The eye, its display, and the difference that it may see.
