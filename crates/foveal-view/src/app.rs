@@ -6,6 +6,8 @@ pub(crate) mod drops;
 mod files;
 mod hands;
 #[cfg(test)]
+mod news_tests;
+#[cfg(test)]
 pub(crate) mod tests;
 
 use std::sync::Arc;
@@ -298,8 +300,7 @@ impl App {
         // The figure stays until the next one: it is measured on some frames only.
         if shown.flip.is_none()
             && let Some(before) = &self.shown
-            && before.camera == shown.camera
-            && self.display.compare
+            && before.request.has_the_sides_of(&shown.request)
         {
             shown.flip = before.flip;
         }
@@ -368,32 +369,16 @@ impl App {
         self.draft = Table::try_from(settings).unwrap_or_default();
     }
 
-    /// The reference as it is drawn: with this picture's size and exposure.
-    fn sized_reference(&self) -> Settings {
-        self.reference.clone().with(|s| {
-            s.picture.width = self.settings.picture.width;
-            s.picture.height = self.settings.picture.height;
-        })
+    /// The reference as it is drawn, or why it cannot be; `None` where nothing is compared.
+    pub(crate) fn reference_beside(&self) -> Option<Result<Settings, String>> {
+        let beside = || needs::beside(&self.reference, &self.settings);
+        self.display.compare.then(beside)
     }
 
     /// Asks for a picture where a new one is wanted.
     fn ask(&mut self) {
-        let Some(navigator) = &self.navigator else {
+        let Some(request) = self.request().filter(|_| self.place.0 > 0) else {
             return;
-        };
-        if self.place.0 == 0 {
-            return;
-        }
-        let request = Request {
-            settings: self.settings.clone(),
-            reference: self.display.compare.then(|| self.sized_reference()),
-            camera: navigator.camera().clone(),
-            frozen: self.display.frozen,
-            boxes: self.display.boxes,
-            depth: self.display.depth,
-            time_s: self.display.time_s,
-            clip: self.display.clip.clone(),
-            always: self.display.always,
         };
         if self.asked.as_ref() != Some(&request) {
             let before = self.asked.as_ref().map(|asked| &asked.settings);
@@ -407,6 +392,22 @@ impl App {
             self.worker.draw(request.clone());
             self.asked = Some(request);
         }
+    }
+
+    /// What shall be on the screen; `None` without a scene.
+    fn request(&self) -> Option<Request> {
+        let navigator = self.navigator.as_ref()?;
+        Some(Request {
+            settings: self.settings.clone(),
+            reference: self.reference_beside().and_then(Result::ok),
+            camera: navigator.camera().clone(),
+            frozen: self.display.frozen,
+            boxes: self.display.boxes,
+            depth: self.display.depth,
+            time_s: self.display.time_s,
+            clip: self.display.clip.clone(),
+            always: self.display.always,
+        })
     }
 
     /// Why a setting has no effect beside the others; `None` where it has one.

@@ -198,18 +198,43 @@ pub(crate) fn refused(key: &str, value: &str, draft: &Table) -> Option<String> {
 
 /// The settings of a draft, where they make sense.
 pub(crate) fn checked(draft: &Table) -> Result<Settings, String> {
+    let settings = draft.clone().try_into::<Settings>();
+    sound(settings.map_err(|error| error.message().to_owned())?)
+}
+
+/// Settings that make sense on some device.
+fn sound(settings: Settings) -> Result<Settings, String> {
     let limits = wgpu::Limits {
         max_texture_dimension_2d: 16384,
         max_buffer_size: u64::MAX,
         max_storage_buffer_binding_size: u64::MAX,
         ..wgpu::Limits::default()
     };
-    let settings = draft.clone().try_into::<Settings>();
-    let settings = settings.map_err(|error| error.message().to_owned())?;
     match settings.validate(&limits) {
         Ok(()) => Ok(settings),
         Err(error) => Err(error.to_string()),
     }
+}
+
+/// The reference as it is drawn beside the chosen settings: at their size and exposure, and for
+/// the same eyes. Where both have two, the reference keeps its own way to draw them.
+///
+/// # Errors
+/// Why it cannot be drawn so.
+pub(crate) fn beside(reference: &Settings, chosen: &Settings) -> Result<Settings, String> {
+    sound(reference.clone().with(|s| {
+        s.picture.width = chosen.picture.width;
+        s.picture.height = chosen.picture.height;
+        s.picture.exposure_stops = chosen.picture.exposure_stops;
+        if s.is_stereo() != chosen.is_stereo() {
+            s.stereo.mode = chosen.stereo.mode;
+        }
+        s.stereo.ipd_m = chosen.stereo.ipd_m;
+        s.stereo.convergence_m = chosen.stereo.convergence_m;
+        s.stereo.frusta = chosen.stereo.frusta;
+        s.stereo.output = chosen.stereo.output;
+        s.stereo.lens = chosen.stereo.lens;
+    }))
 }
 
 /// What boxes, depth and a culling that is kept need.
@@ -342,6 +367,43 @@ mod tests {
         let off = s.with(|s| s.culling.mode = Culling::Off);
         assert!(of_culling(Switch::Boxes, &off).is_some());
         assert!(of_culling(Switch::Freeze, &off).is_some());
+    }
+
+    #[test]
+    fn the_reference_has_the_picture_of_the_chosen_side() {
+        let chosen = Settings::default().with(|s| {
+            s.picture.exposure_stops = 2.0;
+            s.stereo.mode = Stereo::Instanced;
+            s.stereo.ipd_m = 0.1;
+            s.stereo.convergence_m = 5.0;
+            s.stereo.lens = foveal::Lens::Dk1;
+            s.shading.mode = Shading::Coarse;
+        });
+        for output in [Output::SideBySide, Output::Anaglyph, Output::Headset] {
+            let chosen = chosen.clone().with(|s| s.stereo.output = output);
+            let drawn = beside(&Settings::default(), &chosen).unwrap();
+            assert_eq!(drawn.picture_size(), chosen.picture_size());
+            assert_eq!(drawn.stereo, chosen.stereo);
+            assert_eq!(drawn.picture, chosen.picture);
+            assert_eq!(drawn.shading.mode, Shading::Full);
+            // A way to draw two eyes can be compared with another.
+            let two = Settings::default().with(|s| s.stereo.mode = Stereo::TwoPass);
+            assert_eq!(beside(&two, &chosen).unwrap().stereo.mode, Stereo::TwoPass);
+            let flat = beside(&chosen, &Settings::default()).unwrap();
+            assert_eq!(flat.picture_size(), Settings::default().picture_size());
+        }
+    }
+
+    #[test]
+    fn a_reference_that_cannot_have_the_same_eyes_is_refused_with_the_reason() {
+        let lens = Settings::default().with(|s| {
+            s.stereo.mode = Stereo::Instanced;
+            s.stereo.output = Output::Headset;
+            s.shading.mode = Shading::Coarse;
+            s.coarse.source = RateSource::Lens;
+        });
+        let why = beside(&lens, &Settings::default()).unwrap_err();
+        assert!(why.contains("lens"), "{why}");
     }
 
     #[test]

@@ -57,9 +57,13 @@ pub(crate) struct Request {
 impl Request {
     /// Whether both ask for the same pictures.
     pub(crate) fn shows_the_same(&self, other: &Self) -> bool {
+        self.has_the_sides_of(other) && (self.time_s, &self.clip) == (other.time_s, &other.clip)
+    }
+
+    /// Whether both ask for the same two sides from the same place, at whatever moment.
+    pub(crate) fn has_the_sides_of(&self, other: &Self) -> bool {
         (&self.settings, &self.reference, &self.camera)
             == (&other.settings, &other.reference, &other.camera)
-            && (self.time_s, &self.clip) == (other.time_s, &other.clip)
     }
 }
 
@@ -84,7 +88,8 @@ pub(crate) struct OccluderDepth {
 pub(crate) struct Shown {
     pub(crate) picture: Rgba,
     pub(crate) stats: FrameStats,
-    pub(crate) camera: Camera,
+    /// What it was drawn for.
+    pub(crate) request: Request,
     pub(crate) reference: Option<(Rgba, FrameStats)>,
     /// What both sides took, drawn in turn.
     pub(crate) compared: Option<Compared>,

@@ -101,7 +101,7 @@ pub(super) fn loaded() -> App {
             bytes: vec![0; 32],
         },
         stats,
-        camera: app.scene.as_ref().unwrap().start.clone(),
+        request: app.request().unwrap(),
         reference: None,
         compared: None,
         flip: None,

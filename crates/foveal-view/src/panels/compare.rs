@@ -16,6 +16,10 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
             return;
         }
         reference(app, ui);
+        if let Some(Err(why)) = app.reference_beside() {
+            ui.label(RichText::new(why).color(look::BAD));
+            return;
+        }
         let Some(shown) = &app.shown else { return };
         if let Some(compared) = &shown.compared {
             times(ui, compared);

@@ -262,7 +262,7 @@ impl Side {
         Shown {
             picture,
             stats,
-            camera: request.camera.clone(),
+            request: request.clone(),
             reference: None,
             compared: None,
             flip: None,

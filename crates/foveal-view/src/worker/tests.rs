@@ -217,7 +217,7 @@ fn frozen_culling_stays_as_it_was_found() {
     behind.camera.world_from_view *= glam::Mat4::from_rotation_y(std::f32::consts::PI);
     worker.draw(behind.clone());
     let frozen = next(&worker, |news| match news {
-        News::Picture(shown) if shown.camera == behind.camera => Some(shown.culling),
+        News::Picture(shown) if shown.request.camera == behind.camera => Some(shown.culling),
         _ => None,
     });
     let counts = |found: &Option<foveal::CullingStats>| found.map(|found| found.stats);
@@ -365,7 +365,7 @@ fn a_capture_tells_of_each_frame_and_of_its_end() {
     assert_eq!(written, [1, 2, 3, 4, 5]);
     // What is asked for next is drawn again.
     worker.draw(request());
-    assert_eq!(picture(&worker).camera, request().camera);
+    assert_eq!(picture(&worker).request.camera, request().camera);
 }
 
 #[test]
@@ -387,7 +387,7 @@ fn a_capture_is_cancelled_between_frames_and_the_view_comes_back() {
         matches!(&ended, Ended::Cancelled(text) if text.contains("of 100000")),
         "{ended:?}"
     );
-    assert_eq!(picture(&worker).camera, request().camera);
+    assert_eq!(picture(&worker).request.camera, request().camera);
 }
 
 #[test]
@@ -402,7 +402,7 @@ fn a_capture_that_is_cancelled_before_it_begins_ends_too() {
     });
     assert!(matches!(ended, Ended::Cancelled(_)), "{ended:?}");
     worker.draw(request());
-    assert_eq!(picture(&worker).camera, request().camera);
+    assert_eq!(picture(&worker).request.camera, request().camera);
 }
 
 #[test]

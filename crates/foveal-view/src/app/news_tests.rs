@@ -1,0 +1,41 @@
+//! What the window makes of the drawing thread's news, and what it asks for then.
+
+use super::tests::loaded;
+use super::*;
+
+/// What the thread would draw for the window as it is.
+fn drawn(app: &App, flip: Option<f32>) -> Box<Shown> {
+    let request = app.request().unwrap();
+    let shown = app.shown.clone().unwrap();
+    Box::new(Shown {
+        request,
+        flip,
+        ..*shown
+    })
+}
+
+#[test]
+fn the_flip_error_stays_while_both_sides_and_the_view_do() {
+    let context = egui::Context::default();
+    let changes: [fn(&mut App); 4] = [
+        |app| app.settings.shading.mode = foveal::Shading::Coarse,
+        |app| app.reference.antialiasing.mode = foveal::Antialiasing::Ssaa,
+        |app| app.display.compare = false,
+        |app| app.go_to_bookmark(0),
+    ];
+    for change in changes {
+        let mut app = loaded();
+        app.bookmarks[0] = Some(Camera {
+            world_from_view: glam::Mat4::IDENTITY,
+            ..app.scene.as_ref().unwrap().start.clone()
+        });
+        app.display.compare = true;
+        let flip = Some(0.25);
+        app.take_picture(&context, drawn(&app, flip));
+        app.take_picture(&context, drawn(&app, None));
+        assert_eq!(app.shown.as_ref().unwrap().flip, flip);
+        change(&mut app);
+        app.take_picture(&context, drawn(&app, None));
+        assert_eq!(app.shown.as_ref().unwrap().flip, None);
+    }
+}
