@@ -308,8 +308,16 @@ impl App {
         self.load_textures(context);
     }
 
-    /// Moves to a context that has none of the textures yet.
-    pub(crate) fn move_to(&mut self, context: &egui::Context) {
+    /// Moves to a context that has none of the textures yet, and a clock of its own.
+    pub(crate) fn move_to(&mut self, context: &egui::Context, from: &egui::Context) {
+        let clock = |context: &egui::Context| context.input(|i| i.time);
+        let later_s = clock(context) - clock(from);
+        for message in &mut self.messages {
+            message.until_s += later_s;
+        }
+        if let Phase::Flying(since_s, _) = &mut self.capture.phase {
+            *since_s += later_s;
+        }
         self.picture = None;
         self.reference_picture = None;
         self.depth_picture = None;

@@ -166,7 +166,7 @@ impl Open {
             let context = egui::Context::default();
             let memory = self.input.egui_ctx().memory(Clone::clone);
             context.memory_mut(|fresh| *fresh = memory);
-            self.app.move_to(&context);
+            self.app.move_to(&context, self.input.egui_ctx());
             self.input = input(context, &self.window, &graphics);
             self.graphics = Some(graphics);
         }

@@ -39,3 +39,31 @@ fn the_flip_error_stays_while_both_sides_and_the_view_do() {
         assert_eq!(app.shown.as_ref().unwrap().flip, None);
     }
 }
+
+#[test]
+fn messages_and_flights_go_on_by_the_clock_of_a_new_interface() {
+    let mut app = loaded();
+    let pass_at = |app: &mut App, context: &egui::Context, time_s| {
+        let input = egui::RawInput {
+            time: Some(time_s),
+            ..egui::RawInput::default()
+        };
+        let mut output = context.run_ui(input, |ui| app.show(ui));
+        output.textures_delta.clear();
+    };
+    let [old, new] = [(); 2].map(|()| egui::Context::default());
+    pass_at(&mut app, &old, 100.0);
+    app.capture.way = Way::Flight;
+    app.capture.seconds = 2.0;
+    app.start_capture(&old);
+    app.say(&old, "for five seconds");
+    pass_at(&mut app, &old, 101.0);
+    app.move_to(&new, &old);
+    pass_at(&mut app, &new, 0.5);
+    assert!(matches!(app.capture.phase, Phase::Flying(..)));
+    pass_at(&mut app, &new, 1.5);
+    assert!(matches!(app.capture.phase, Phase::Drawing(0, 60)));
+    assert_eq!(app.messages.len(), 1);
+    pass_at(&mut app, &new, 5.0);
+    assert!(app.messages.is_empty());
+}
