@@ -88,7 +88,9 @@ pub(crate) struct App {
     pub(crate) capture: Capture,
     pub(crate) scene: Option<LoadedScene>,
     pub(crate) scene_name: String,
-    pub(crate) loading: bool,
+    /// The scene that is being opened. Until it is there, nothing is asked for: it would be asked
+    /// of a scene that goes.
+    pub(crate) opening: Option<String>,
     pub(crate) adapter: Option<AdapterStats>,
     pub(crate) abilities: Abilities,
     pub(crate) shown: Option<Box<Shown>>,
@@ -147,7 +149,7 @@ impl App {
             capture: Capture::default(),
             scene: None,
             scene_name: host.scene.clone(),
-            loading: true,
+            opening: Some(host.scene.clone()),
             adapter: None,
             abilities: Abilities::default(),
             shown: None,
@@ -188,8 +190,9 @@ impl App {
     pub(crate) fn open_scene(&mut self, name: String) {
         // Its poses belong to the scene that goes.
         self.cancel_capture();
-        self.loading = true;
+        self.asked = None;
         self.worker.load(name.clone());
+        self.opening = Some(name.clone());
         self.scene_name = name;
     }
 
@@ -255,17 +258,23 @@ impl App {
                         self.quality = Some(quality);
                     }
                 }
-                News::Failed(cause) => {
+                News::LoadFailed(scene, cause) => {
                     // What was typed stays, to be mended.
-                    self.loading = false;
+                    self.has_opened(&scene);
                     self.complain(cause);
                 }
+                News::Failed(cause) => self.complain(cause),
             }
         }
     }
 
+    /// Notes that a scene was loaded, or could not be; another may have been asked for since.
+    fn has_opened(&mut self, scene: &str) {
+        self.opening.take_if(|opening| opening == scene);
+    }
+
     fn take_scene(&mut self, context: &egui::Context, scene: LoadedScene) {
-        self.loading = false;
+        self.has_opened(&scene.source);
         self.navigator = Some(Navigator::new(scene.start.clone(), scene.bounds));
         self.selected = None;
         self.display.clip = scene.clip.clone();
@@ -385,7 +394,8 @@ impl App {
 
     /// Asks for a picture where a new one is wanted.
     fn ask(&mut self) {
-        let Some(request) = self.request().filter(|_| self.place.0 > 0) else {
+        let can_be_drawn = self.place.0 > 0 && self.opening.is_none();
+        let Some(request) = self.request().filter(|_| can_be_drawn) else {
             return;
         };
         if self.asked.as_ref() != Some(&request) {

@@ -136,7 +136,7 @@ fn wait<T>(
 ) -> anyhow::Result<T> {
     loop {
         for news in worker.news() {
-            if let News::Failed(cause) = news {
+            if let News::Failed(cause) | News::LoadFailed(_, cause) = news {
                 bail!(cause);
             }
             if let Some(found) = wanted(news) {

@@ -103,7 +103,7 @@ pub(crate) fn show(app: &mut App, ui: &mut egui::Ui) {
 fn picture(app: &App, ui: &egui::Ui, place: Rect) -> Option<Rect> {
     let painter = ui.painter_at(place);
     let (Some(shown), Some(texture)) = (&app.shown, &app.picture) else {
-        let text = match (app.loading, &app.scene) {
+        let text = match (app.opening.is_some(), &app.scene) {
             (true, _) => "Loading...",
             (false, Some(_)) => "Drawing the first frame...",
             (false, None) => "No scene",

@@ -146,6 +146,8 @@ pub(crate) enum News {
     /// How visible the difference of two sides is that were drawn before.
     Quality(Box<Quality>),
     Failed(String),
+    /// The scene, and why it could not be loaded.
+    LoadFailed(String, String),
 }
 
 /// The window's end.
@@ -203,6 +205,21 @@ impl Worker {
     #[cfg(test)]
     pub(crate) fn imagine(&self, news: News) {
         self.imagined.send(news).unwrap();
+    }
+
+    /// Takes the orders that wait, by name, in the order in which the thread would.
+    #[cfg(test)]
+    pub(crate) fn ordered(&self) -> Vec<&'static str> {
+        let next = || match self.inbox.next(false) {
+            Order::Load(_) => Some("load"),
+            Order::Draw(_) => Some("draw"),
+            Order::Pick(_) => Some("pick"),
+            Order::Capture(_) => Some("capture"),
+            Order::CancelCapture => Some("cancel"),
+            Order::LoseDevice => Some("lose"),
+            Order::Quit | Order::Nothing => None,
+        };
+        std::iter::from_fn(next).collect()
     }
 
     pub(crate) fn load(&self, scene: String) {
@@ -305,7 +322,7 @@ fn work<W: Fn()>(host: &Host, inbox: &Inbox, judge: &Judge, tell: &Teller<W>) {
                         wanted = None;
                         tell.tell(News::Scene(Box::new(scene)));
                     }
-                    Err(error) => tell.fail(&error),
+                    Err(error) => tell.tell(News::LoadFailed(name, format!("{error:#}"))),
                 }
                 continue;
             }

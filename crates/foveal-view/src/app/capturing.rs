@@ -70,7 +70,8 @@ impl Capture {
 impl App {
     /// Starts what the capture card says.
     pub(crate) fn start_capture(&mut self, context: &Context) {
-        let (Some(_), Some(pose), true) = (&self.scene, self.pose(), self.capture.is_idle()) else {
+        let can_start = self.capture.is_idle() && self.opening.is_none();
+        let (Some(_), Some(pose), true) = (&self.scene, self.pose(), can_start) else {
             return;
         };
         self.capture.ended = None;

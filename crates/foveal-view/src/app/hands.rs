@@ -158,7 +158,7 @@ impl App {
 
     /// Selects what is at a place of the picture, given as fractions of it from the top left.
     pub(crate) fn select_at(&mut self, context: &egui::Context, place: Vec2, aspect: f32) {
-        let Some(navigator) = &self.navigator else {
+        let (Some(navigator), None) = (&self.navigator, &self.opening) else {
             return;
         };
         if self.settings.is_stereo() && self.settings.stereo.output != Output::Flat {

@@ -1,6 +1,6 @@
 //! What the window makes of the drawing thread's news, and what it asks for then.
 
-use super::tests::loaded;
+use super::tests::{Pass, SIZES, loaded};
 use super::*;
 
 /// What the thread would draw for the window as it is.
@@ -66,4 +66,38 @@ fn messages_and_flights_go_on_by_the_clock_of_a_new_interface() {
     assert_eq!(app.messages.len(), 1);
     pass_at(&mut app, &new, 5.0);
     assert!(app.messages.is_empty());
+}
+
+#[test]
+fn nothing_is_asked_of_a_scene_that_goes() {
+    let mut app = loaded();
+    let context = egui::Context::default();
+    let pass = Pass::new(&context, SIZES[0]);
+    pass.show(&mut app, Vec::new());
+    let ask_all = |app: &mut App| {
+        app.select_at(&context, Vec2::splat(0.5), 1.5);
+        app.start_capture(&context);
+        app.go_to_start();
+        pass.show(app, Vec::new());
+    };
+    ask_all(&mut app);
+    assert_eq!(app.worker.ordered(), ["pick", "capture", "draw"]);
+    app.capture.phase = Phase::Idle;
+    // Neither what waits nor what comes then.
+    app.select_at(&context, Vec2::splat(0.5), 1.5);
+    app.open_scene("first".to_owned());
+    app.open_scene("second".to_owned());
+    ask_all(&mut app);
+    assert_eq!(app.worker.ordered(), ["load"]);
+    // A scene that was given up for another, and a picture that failed, end nothing.
+    let source = "first".to_owned();
+    app.worker.imagine(News::LoadFailed(source, String::new()));
+    app.worker.imagine(News::Failed(String::new()));
+    ask_all(&mut app);
+    assert!(app.worker.ordered().is_empty());
+    // Where the other cannot be opened either, the old one is drawn on.
+    let source = "second".to_owned();
+    app.worker.imagine(News::LoadFailed(source, String::new()));
+    pass.show(&mut app, Vec::new());
+    assert_eq!(app.worker.ordered(), ["draw"]);
 }

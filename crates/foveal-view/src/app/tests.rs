@@ -295,7 +295,7 @@ fn a_scene_is_opened_from_the_dialog_by_keys() {
     assert!(!app.display.boxes);
     pass.press(&mut app, Modifiers::NONE, Key::Enter);
     assert_eq!(app.scene_name, "/home/eva/room.gltf");
-    assert!(app.loading && app.browser.is_none());
+    assert!(app.opening.is_some() && app.browser.is_none());
     pass.press(&mut app, Modifiers::COMMAND, Key::O);
     pass.press(&mut app, Modifiers::NONE, Key::Escape);
     assert!(app.browser.is_none());
@@ -306,11 +306,13 @@ fn what_failed_to_open_stays_typed_and_the_old_scene_stays() {
     let mut app = loaded();
     let context = egui::Context::default();
     app.open_scene("/no/such.glb".to_owned());
-    app.worker.imagine(News::Failed("there is none".to_owned()));
+    let cause = "there is none".to_owned();
+    app.worker
+        .imagine(News::LoadFailed("/no/such.glb".to_owned(), cause));
     app.take_news(&context);
     assert_eq!(app.scene_name, "/no/such.glb");
     assert_eq!(app.scene.as_ref().unwrap().source, "cornell");
-    assert!(!app.loading && app.messages[0].is_error);
+    assert!(app.opening.is_none() && app.messages[0].is_error);
     assert_eq!(app.memory.recent, ["cornell"]);
 }
 

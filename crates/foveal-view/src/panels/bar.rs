@@ -63,7 +63,7 @@ fn scene(app: &mut App, ui: &mut egui::Ui) {
             ui.close();
         }
     });
-    if app.loading {
+    if app.opening.is_some() {
         ui.spinner();
     }
 }

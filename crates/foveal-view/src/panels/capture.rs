@@ -29,10 +29,8 @@ fn contents(app: &mut App, ui: &mut Ui) {
                 Way::Turntable => "Start (Enter)",
                 Way::Flight => "Start flying (Enter)",
             };
-            if ui
-                .add_enabled(app.scene.is_some(), egui::Button::new(text))
-                .clicked()
-            {
+            let has_scene = app.scene.is_some() && app.opening.is_none();
+            if ui.add_enabled(has_scene, egui::Button::new(text)).clicked() {
                 app.start_capture(&ui.ctx().clone());
             }
         }

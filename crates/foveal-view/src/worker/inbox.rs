@@ -48,10 +48,12 @@ impl Inbox {
         self.changed.notify_one();
     }
 
+    /// What was asked of the scene before is asked no more.
     pub(super) fn load(&self, scene: String) {
         let mut orders = self.orders();
         orders.load = Some(scene);
         orders.draw = None;
+        orders.pick = None;
         self.changed.notify_one();
     }
 

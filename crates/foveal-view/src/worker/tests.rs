@@ -100,7 +100,7 @@ fn picture(worker: &Worker) -> Box<Shown> {
 
 fn failure(worker: &Worker) -> String {
     next(worker, |news| match news {
-        News::Failed(cause) => Some(cause),
+        News::Failed(cause) | News::LoadFailed(_, cause) => Some(cause),
         _ => None,
     })
 }
