@@ -17,10 +17,13 @@ function moveSplit(split) {
   writeLink();
 }
 
-/** The chosen side's last picture as a PNG file. */
+/** The last frame as a PNG file: the chosen side, or the reference where that alone is shown. */
 async function savePicture() {
-  const pixels = new Uint8ClampedArray(await page.viewer.picture(true));
-  const { width, height } = page.costs.chosen;
+  const { chosen, reference } = page.drawn;
+  const cost = chosen ?? reference;
+  if (!cost) return;
+  const pixels = new Uint8ClampedArray(await page.viewer.picture(cost === chosen));
+  const { width, height } = cost;
   const canvas = new OffscreenCanvas(width, height);
   canvas.getContext('2d').putImageData(new ImageData(pixels, width, height), 0, 0);
   const link = document.createElement('a');

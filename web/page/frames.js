@@ -40,6 +40,7 @@ async function drawFrame() {
   page.unsettled -= 1;
   page.frames += 1;
   page.firstFrameMs ??= performance.now();
+  page.drawn = { reference: cost.reference, chosen: cost.chosen };
   const found = { frame: cost.frame, passes: cost.passes };
   page.costs = { reference: cost.reference ?? page.costs.reference, chosen: cost.chosen ?? page.costs.chosen, found };
   page.measured = cost.is_measured;

@@ -43,6 +43,8 @@ export const page = {
   // The scene that was shown when it stopped last.
   stoppedAt: null,
   costs: { reference: null, chosen: null, found: null },
+  // What the last frame cost, of each side that it drew.
+  drawn: { reference: null, chosen: null },
   // Whether more frames can tell nothing more of the two sides.
   measured: false,
 };

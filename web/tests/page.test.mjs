@@ -1,7 +1,7 @@
 // The page in a real browser: what a visitor does, and what must come of it.
 
 import assert from 'node:assert/strict';
-import { mkdirSync, mkdtempSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -147,6 +147,25 @@ test('the picture is the native one', async () => {
   foveal('render', 'demo:1000', '--anisotropy', '1', '--size', `${width}x${height}`, '--output', ours);
   assert.ok(flip(ours, theirs) < 0.01, `FLIP to the native picture is ${flip(ours, theirs)}`);
   await page.context().close();
+});
+
+test('the saved picture is the chosen side\'s, or the reference\'s where that alone is shown', async () => {
+  for (const [split, chosen] of [['0.5', true], ['0', true], ['1', false]]) {
+    const { page, said } = await site.visit(`#scene=cornell&technique=msaa&scale=0.25&split=${split}`, SMALL);
+    const shown = await picture(page, chosen);
+    const waits = page.waitForEvent('download', { timeout: 20_000 });
+    await page.locator('#save').click();
+    const png = readFileSync(await (await waits).path());
+    const bytes = await page.evaluate(async (text) => {
+      const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${text}`)).blob());
+      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+      context.drawImage(bitmap, 0, 0);
+      return [...context.getImageData(0, 0, bitmap.width, bitmap.height).data];
+    }, png.toString('base64'));
+    assert.ok(shown.bytes.equals(Buffer.from(bytes)), `split ${split}`);
+    assert.deepEqual(said, []);
+    await page.context().close();
+  }
 });
 
 test('the divider moves by keyboard and by dragging, and hides what it covers', async () => {
