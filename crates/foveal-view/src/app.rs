@@ -15,7 +15,6 @@ use std::sync::Arc;
 use egui::{TextureHandle, TextureOptions};
 use foveal::{AdapterStats, Settings};
 use foveal_scene::{Camera, Clip};
-use glam::Vec2;
 use toml::Table;
 
 use crate::Host;
@@ -355,12 +354,6 @@ impl App {
             let image = egui::ColorImage::from_gray_iter(size, gray);
             load(&mut self.depth_picture, "depth", image);
         }
-    }
-
-    /// Where the eye looks, by the pointer's place in the picture.
-    pub(crate) fn look_at(&mut self, place: Vec2) {
-        let gaze = [place.x, place.y].map(|p| f64::from((p * 1000.0).round() / 1000.0));
-        self.draft.insert("gaze".to_owned(), gaze.to_vec().into());
     }
 
     /// Takes over the draft where it makes sense.

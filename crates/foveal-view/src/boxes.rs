@@ -1,9 +1,9 @@
 //! Objects' boxes as lines over the picture, coloured by what became of them.
 
 use egui::{Color32, Pos2, Rect, Stroke};
-use foveal::Visibility;
-use foveal_scene::{Aabb, Camera};
-use glam::{Mat4, Vec3, Vec4};
+use foveal::{ShownEyes, Visibility};
+use foveal_scene::Aabb;
+use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::look;
 
@@ -36,17 +36,17 @@ fn color(visibility: Visibility) -> Color32 {
 }
 
 /// Draws the nearest boxes over a picture at `rect`, hidden ones last, since they are what one
-/// looks for.
+/// looks for. `from` is where the camera is.
 pub(crate) fn draw(
     painter: &egui::Painter,
     rect: Rect,
-    camera: &Camera,
+    eyes: &ShownEyes,
+    from: Vec3,
     boxes: &[(Aabb, Visibility)],
 ) {
-    let clip_from_world = camera.clip_from_world(rect.width() / rect.height());
     let mut nearest: Vec<_> = boxes.iter().filter(|(b, _)| !b.is_empty()).collect();
     if nearest.len() > MOST_BOXES {
-        let distance = |b: &Aabb| b.center().distance_squared(camera.eye());
+        let distance = |b: &Aabb| b.center().distance_squared(from);
         nearest
             .select_nth_unstable_by(MOST_BOXES, |a, b| distance(&a.0).total_cmp(&distance(&b.0)));
         nearest.truncate(MOST_BOXES);
@@ -54,41 +54,42 @@ pub(crate) fn draw(
     nearest.sort_by_key(|(_, visibility)| *visibility == Visibility::Occluded);
     for (bounds, visibility) in nearest {
         let stroke = Stroke::new(1.0, color(*visibility));
-        strokes(painter, rect, &clip_from_world, bounds, stroke);
+        outline(painter, rect, eyes, bounds, stroke);
     }
 }
 
-/// Draws one box.
+/// Draws one box, as each eye sees it.
 pub(crate) fn outline(
     painter: &egui::Painter,
     rect: Rect,
-    camera: &Camera,
+    eyes: &ShownEyes,
     bounds: &Aabb,
-    color: Color32,
+    stroke: Stroke,
 ) {
-    let clip_from_world = camera.clip_from_world(rect.width() / rect.height());
-    strokes(
-        painter,
-        rect,
-        &clip_from_world,
-        bounds,
-        Stroke::new(2.0, color),
-    );
-}
-
-fn strokes(painter: &egui::Painter, rect: Rect, clip: &Mat4, bounds: &Aabb, stroke: Stroke) {
-    for line in lines(clip, bounds) {
-        let [a, b] = line.map(|[x, y]| {
-            Pos2::new(
-                rect.left() + x * rect.width(),
-                rect.top() + y * rect.height(),
-            )
-        });
-        painter.line_segment([a, b], stroke);
+    let parts = if eyes.bends_lines() { 8 } else { 1 };
+    for eye in 0..eyes.count() {
+        for [a, b] in lines(&eyes.clip_from_world(eye), bounds) {
+            let (a, b) = (Vec2::from(a), Vec2::from(b));
+            let points = (0..=parts).map(|i| a.lerp(b, i as f32 / parts as f32));
+            painter.line(placed(rect, eyes, eye, points), stroke);
+        }
     }
 }
 
-/// The visible parts of a box's edges, as fractions of the picture from its top left corner.
+/// Where a picture at `rect` has places of an eye's picture.
+pub(crate) fn placed(
+    rect: Rect,
+    eyes: &ShownEyes,
+    eye: usize,
+    places: impl Iterator<Item = Vec2>,
+) -> Vec<Pos2> {
+    places
+        .filter_map(|place| eyes.shown(eye, place.to_array()))
+        .map(|[x, y]| rect.min + rect.size() * egui::Vec2::new(x, y))
+        .collect()
+}
+
+/// The visible parts of a box's edges, as fractions of an eye's picture from its top left corner.
 fn lines(clip_from_world: &Mat4, bounds: &Aabb) -> Vec<[[f32; 2]; 2]> {
     let corner = |i: usize| {
         let pick = |bit: usize, low: f32, high: f32| if i >> bit & 1 == 0 { low } else { high };
@@ -133,6 +134,8 @@ fn clipped(a: Vec4, b: Vec4) -> Option<(Vec4, Vec4)> {
 
 #[cfg(test)]
 mod tests {
+    use foveal_scene::Camera;
+
     use super::*;
 
     fn unit_box(at: Vec3) -> Aabb {

@@ -1,7 +1,7 @@
 //! Which object is under the pointer: the nearest triangle that a ray meets.
 
-use foveal_scene::{Aabb, Camera, Mesh, Scene};
-use glam::Vec3;
+use foveal_scene::{Aabb, Mesh, Scene};
+use glam::{Mat4, Vec3};
 
 /// A half line through the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,9 +74,9 @@ pub(crate) fn pick(scene: &Scene, ray: Ray) -> Option<Picked> {
 }
 
 impl Ray {
-    /// Through a place of a picture of this aspect, given as fractions from its top left corner.
-    pub(crate) fn through(camera: &Camera, [x, y]: [f32; 2], aspect: f32) -> Self {
-        let world_from_clip = camera.clip_from_world(aspect).inverse();
+    /// Through a place of an eye's picture, given as fractions from its top left corner.
+    pub(crate) fn through(clip_from_world: &Mat4, [x, y]: [f32; 2]) -> Self {
+        let world_from_clip = clip_from_world.inverse();
         let at =
             |depth| world_from_clip.project_point3(Vec3::new(2.0 * x - 1.0, 1.0 - 2.0 * y, depth));
         // Depth is reversed: the near plane, and a place twice as far.
@@ -174,14 +174,14 @@ mod tests {
         };
         for camera in [&scene.cameras[0], &parallel] {
             let named = |place| {
-                let picked = pick(&scene, Ray::through(camera, place, 1.5));
+                let picked = pick(&scene, Ray::through(&camera.clip_from_world(1.5), place));
                 picked.map(|picked| picked.name)
             };
             assert_eq!(named([0.4, 0.5]).as_deref(), Some("tall block"));
         }
         // Only a pinhole's rays reach what runs along the view.
         for (place, name) in [([0.5, 0.97], "floor"), ([0.1, 0.5], "left wall")] {
-            let ray = Ray::through(&scene.cameras[0], place, 1.5);
+            let ray = Ray::through(&scene.cameras[0].clip_from_world(1.5), place);
             assert_eq!(pick(&scene, ray).unwrap().name, name);
         }
     }

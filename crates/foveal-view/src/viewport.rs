@@ -77,7 +77,7 @@ pub(crate) fn show(app: &mut App, ui: &mut egui::Ui) {
         {
             let place = (at - rect.min) / rect.size();
             let place = glam::Vec2::new(place.x, place.y);
-            app.select_at(&ui.ctx().clone(), place, rect.aspect_ratio());
+            app.select_at(place);
         }
         if response.hovered() {
             hands.scroll = ui.input(|i| i.smooth_scroll_delta().y) / 50.0;
@@ -136,24 +136,16 @@ fn picture(app: &App, ui: &egui::Ui, place: Rect) -> Option<Rect> {
         let part = Rect::from_min_max(Pos2::ZERO, Pos2::new(x, 1.0));
         painter.image(reference.id(), left, part, Color32::WHITE);
     }
-    if app.display.boxes {
+    if let (Some(eyes), Some(navigator)) = (app.shown_eyes(), &app.navigator) {
         let painter = ui.painter_at(rect);
-        boxes::draw(
-            &painter,
-            rect,
-            app.navigator.as_ref()?.camera(),
-            &shown.boxes,
-        );
-    }
-    if let (Some(picked), Some(navigator)) = (&app.selected, &app.navigator) {
-        let camera = navigator.camera();
-        boxes::outline(
-            &ui.painter_at(rect),
-            rect,
-            camera,
-            &picked.bounds,
-            look::ACCENT,
-        );
+        if app.display.boxes {
+            let from = navigator.camera().eye();
+            boxes::draw(&painter, rect, &eyes, from, &shown.boxes);
+        }
+        if let Some(picked) = &app.selected {
+            let stroke = Stroke::new(2.0, look::ACCENT);
+            boxes::outline(&painter, rect, &eyes, &picked.bounds, stroke);
+        }
     }
     Some(rect)
 }
@@ -190,15 +182,28 @@ fn split(app: &mut App, ui: &egui::Ui, rect: Rect) -> bool {
     response.hovered() || response.dragged()
 }
 
+/// A circle around where each eye looks.
 fn gaze(app: &App, ui: &egui::Ui, rect: Rect) {
-    let [x, y] = app.settings.eye.gaze;
-    let at = rect.min + rect.size() * Vec2::new(x, y);
-    let radius = match app.settings.coarse.source {
-        RateSource::Radii => app.settings.coarse.fovea_inner * rect.height(),
+    let Some(eyes) = app.shown_eyes() else { return };
+    let settings = &app.settings;
+    let radius = match settings.coarse.source {
+        RateSource::Radii => settings.coarse.fovea_inner,
         _ => 0.0,
     };
+    // In pictures' heights; seen even where there is none.
+    let radius = radius.max(4.0 / rect.height());
+    let across = radius / app.aspect();
     let painter = ui.painter_at(rect);
-    painter.circle_stroke(at, radius.max(4.0), Stroke::new(1.0, look::ACCENT));
+    for eye in 0..eyes.count() {
+        let shift = glam::Vec2::from(settings.stereo.gaze_shift) * eye as f32;
+        let at = glam::Vec2::from(settings.eye.gaze) + shift;
+        let around = (0..=48).map(|i| {
+            let angle = std::f32::consts::TAU * i as f32 / 48.0;
+            at + glam::Vec2::from_angle(angle) * glam::Vec2::new(across, radius)
+        });
+        let circle = boxes::placed(rect, &eyes, eye, around);
+        painter.line(circle, Stroke::new(1.0, look::ACCENT));
+    }
 }
 
 /// What the colours mean, at the lower left.

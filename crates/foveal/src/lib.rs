@@ -61,6 +61,8 @@ pub use settings::{
     ShadingSettings, ShadowSizes, Shadows, Stereo, StereoSettings, ToneMap, VariableSettings,
 };
 
+pub use stereo::ShownEyes;
+
 pub use stats::{
     AdapterStats, CoarseStats, FrameStats, SceneStats, ShadowStats, StereoStats, Timing,
     VariableStats,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use egui::{Event, Key, Modifiers};
-use foveal::Output;
+use foveal::ShownEyes;
 use foveal_scene::Camera;
 use glam::{Vec2, Vec3};
 
@@ -135,8 +135,8 @@ impl App {
         }
     }
 
-    /// Width by height of the picture.
-    fn aspect(&self) -> f32 {
+    /// Width by height of an eye's picture.
+    pub(crate) fn aspect(&self) -> f32 {
         self.settings.picture.width as f32 / self.settings.picture.height.max(1) as f32
     }
 
@@ -156,21 +156,41 @@ impl App {
         }
     }
 
+    /// The eyes that the picture on the screen shows, from where the camera is.
+    pub(crate) fn shown_eyes(&self) -> Option<ShownEyes> {
+        let (shown, navigator) = (self.shown.as_ref()?, self.navigator.as_ref()?);
+        ShownEyes::new(&shown.request.settings, navigator.camera()).ok()
+    }
+
     /// Selects what is at a place of the picture, given as fractions of it from the top left.
-    pub(crate) fn select_at(&mut self, context: &egui::Context, place: Vec2, aspect: f32) {
-        let (Some(navigator), None) = (&self.navigator, &self.opening) else {
+    pub(crate) fn select_at(&mut self, place: Vec2) {
+        if let (Some(ray), None) = (self.ray_at(place), &self.opening) {
+            self.worker.pick(ray);
+        }
+    }
+
+    /// The ray of the eye whose picture has this place; `None` where no eye sees anything.
+    fn ray_at(&self, place: Vec2) -> Option<Ray> {
+        let eyes = self.shown_eyes()?;
+        let (eye, place) = eyes.seen(place.to_array());
+        let is_seen = place.iter().all(|part| (0.0..=1.0).contains(part));
+        is_seen.then(|| Ray::through(&eyes.clip_from_world(eye), place))
+    }
+
+    /// Has the eye look at a place of the picture, given as fractions of it from the top left.
+    pub(crate) fn look_at(&mut self, place: Vec2) {
+        let Some(eyes) = self.shown_eyes() else {
             return;
         };
-        if self.settings.is_stereo() && self.settings.stereo.output != Output::Flat {
-            self.say(
-                context,
-                "Objects are selected in flat pictures alone: set Output to flat",
-            );
-            return;
-        }
-        let place = [place.x, place.y];
-        self.worker
-            .pick(Ray::through(navigator.camera(), place, aspect));
+        let (eye, place) = eyes.seen(place.to_array());
+        let shift = self
+            .settings
+            .stereo
+            .gaze_shift
+            .map(|part| part * eye as f32);
+        let gaze = (Vec2::from(place) - Vec2::from(shift)).to_array();
+        let gaze = gaze.map(|part| f64::from((part * 1000.0).round() / 1000.0));
+        self.draft.insert("gaze".to_owned(), gaze.to_vec().into());
     }
 
     pub(crate) fn set_bookmark(&mut self, index: usize) {
@@ -241,8 +261,63 @@ impl App {
 
 #[cfg(test)]
 mod tests {
+    use foveal::{Output, Stereo};
+    use foveal_generate as generate;
+
     use super::super::tests::{Pass, SIZES, loaded};
     use super::*;
+    use crate::pick::pick;
+
+    /// An app that shows both eyes.
+    fn with_eyes(output: Output) -> App {
+        let mut app = loaded();
+        app.settings.stereo.mode = Stereo::Instanced;
+        app.settings.stereo.output = output;
+        if let Some(shown) = &mut app.shown {
+            shown.request.settings = app.settings.clone();
+        }
+        app
+    }
+
+    #[test]
+    fn a_click_meets_what_the_eye_sees_whose_picture_is_there() {
+        let scene = generate::cornell();
+        let block = scene.objects.iter().find(|o| o.name == "tall block");
+        let middle = block.unwrap().bounds.center();
+        for output in [
+            Output::Flat,
+            Output::SideBySide,
+            Output::SideBySideHalf,
+            Output::Anaglyph,
+            Output::Headset,
+        ] {
+            let app = with_eyes(output);
+            let eyes = app.shown_eyes().unwrap();
+            for eye in 0..eyes.count() {
+                let at = eyes.clip_from_world(eye).project_point3(middle);
+                let at = eyes.shown(eye, [0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y]);
+                let ray = app.ray_at(at.unwrap().into()).unwrap();
+                let found = pick(&scene, ray).unwrap();
+                assert_eq!(found.name, "tall block", "{output:?}, eye {eye}");
+            }
+        }
+        let corner = with_eyes(Output::Headset).ray_at(Vec2::splat(0.001));
+        assert_eq!(corner, None);
+    }
+
+    #[test]
+    fn the_gaze_is_a_place_of_the_left_eye_s_picture() {
+        let gaze = |output, at: [f32; 2]| {
+            let mut app = with_eyes(output);
+            app.settings.stereo.gaze_shift = [0.25, 0.0];
+            app.look_at(at.into());
+            app.draft["gaze"].to_string()
+        };
+        assert_eq!(gaze(Output::Flat, [0.75, 0.25]), "[0.75, 0.25]");
+        assert_eq!(gaze(Output::Anaglyph, [0.75, 0.25]), "[0.75, 0.25]");
+        assert_eq!(gaze(Output::SideBySide, [0.25, 0.25]), "[0.5, 0.25]");
+        assert_eq!(gaze(Output::SideBySide, [0.75, 0.25]), "[0.25, 0.25]");
+    }
 
     #[test]
     fn a_held_key_switches_once() {

@@ -75,7 +75,7 @@ fn nothing_is_asked_of_a_scene_that_goes() {
     let pass = Pass::new(&context, SIZES[0]);
     pass.show(&mut app, Vec::new());
     let ask_all = |app: &mut App| {
-        app.select_at(&context, Vec2::splat(0.5), 1.5);
+        app.select_at(glam::Vec2::splat(0.5));
         app.start_capture(&context);
         app.go_to_start();
         pass.show(app, Vec::new());
@@ -84,7 +84,7 @@ fn nothing_is_asked_of_a_scene_that_goes() {
     assert_eq!(app.worker.ordered(), ["pick", "capture", "draw"]);
     app.capture.phase = Phase::Idle;
     // Neither what waits nor what comes then.
-    app.select_at(&context, Vec2::splat(0.5), 1.5);
+    app.select_at(glam::Vec2::splat(0.5));
     app.open_scene("first".to_owned());
     app.open_scene("second".to_owned());
     ask_all(&mut app);

@@ -9,6 +9,7 @@ mod choose;
 mod eyes;
 mod layout;
 mod lens;
+mod shown;
 mod submission;
 #[cfg(test)]
 mod tests;
@@ -17,5 +18,6 @@ mod trial;
 pub(crate) use eyes::{Eye, cluster_shifts, eyes};
 pub(crate) use layout::EyeLayout;
 pub(crate) use lens::{LensFit, check_lens};
+pub use shown::ShownEyes;
 pub(crate) use submission::{Drawn, Submission};
 pub(crate) use trial::Trials;

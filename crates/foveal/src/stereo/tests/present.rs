@@ -7,7 +7,7 @@ use glam::{Mat3, Vec2, Vec3};
 use super::two_eyes;
 use crate::stereo::{LensFit, eyes};
 use crate::testing::{picture, rendered, texels};
-use crate::{Output, Settings};
+use crate::{Output, Settings, ShownEyes};
 
 pub(super) fn linear(srgb: f32) -> f32 {
     if srgb <= 0.04045 {
@@ -30,6 +30,7 @@ struct Pictures {
     settings: Settings,
     texels: Vec<[u8; 4]>,
     fits: Option<[LensFit; 2]>,
+    places: ShownEyes,
     camera: Camera,
 }
 
@@ -82,6 +83,11 @@ impl Pictures {
                 (top - tangent.y) / (top - bottom),
             ) * size
         };
+        let (width, height) = self.settings.picture_size();
+        let shown = (Vec2::new(x as f32, y as f32) + 0.5) / Vec2::new(width as f32, height as f32);
+        let (its, place) = self.places.seen(shown.to_array());
+        let off = pixel(seen) - Vec2::from(place) * size;
+        assert!(its == eye as usize && off.length() < 0.05, "{off}");
         let fringe = |c: [f32; 2]| seen * (c[0] + c[1] * u);
         Vec3::new(
             self.light(eye, pixel(fringe(fit.lens.red))).x,
@@ -138,6 +144,7 @@ fn assert_equals_twin(scene: &Scene, settings: Settings) {
     let pictures = Pictures {
         texels: texels(&renderer.targets().picture_view),
         fits: LensFit::of(&settings, &eyes).expect("the lens fits"),
+        places: ShownEyes::new(&settings, &camera).expect("sound eyes"),
         camera,
         settings,
     };
