@@ -369,9 +369,7 @@ fn work<W: Fn()>(host: &Host, inbox: &Inbox, judge: &Judge, tell: &Teller<W>) {
                 }
                 Err(error) => {
                     tell.tell(News::CaptureEnded(running.failed(&error)));
-                    if error.is::<Error>() {
-                        drawing.give_up_device();
-                    }
+                    drawing.give_up(&error);
                     settled = 0;
                 }
             }
@@ -388,7 +386,7 @@ fn work<W: Fn()>(host: &Host, inbox: &Inbox, judge: &Judge, tell: &Teller<W>) {
             Ok(None) => {}
             Err(error) => {
                 tell.fail(&error);
-                drawing.give_up_device();
+                drawing.give_up(&error);
                 // A lost device is no fault of the request: once more, on a new one. All else not
                 // again until something changes.
                 let was_lost = matches!(error.downcast_ref(), Some(Error::DeviceLost { .. }));

@@ -435,3 +435,37 @@ fn switches_that_need_culling_say_so() {
     let output = pass.show(&mut app, Vec::new());
     assert_eq!(says(&output, why), 0);
 }
+
+#[test]
+fn a_file_s_name_counts_once_it_is_typed() {
+    let mut app = loaded();
+    let settings = Settings::default().with(|s| {
+        s.lighting.environment = foveal::EnvironmentSource::Image;
+        s.lighting.environment_image = "sky.hdr".to_owned();
+    });
+    app.use_settings(&settings);
+    let context = egui::Context::default();
+    let pass = Pass::new(&context, Vec2::new(1280.0, 3000.0));
+    for _ in 0..2 {
+        pass.show(&mut app, Vec::new());
+    }
+    let output = pass.show(&mut app, Vec::new());
+    let field = texts(&output).into_iter().find(|t| t.says == "sky.hdr");
+    let at = field.unwrap().rect.right_center();
+    let press = |pressed| Event::PointerButton {
+        pos: at,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    pass.show(&mut app, vec![Event::PointerMoved(at), press(true)]);
+    pass.show(&mut app, vec![press(false)]);
+    for letter in ["2", "3"] {
+        pass.show(&mut app, vec![Event::Text(letter.to_owned())]);
+    }
+    let named = |app: &App| app.settings.lighting.environment_image.clone();
+    assert_eq!(named(&app), "sky.hdr");
+    pass.press(&mut app, Modifiers::NONE, Key::Enter);
+    assert_ne!(named(&app), "sky.hdr");
+    assert!(named(&app).contains("23"));
+}

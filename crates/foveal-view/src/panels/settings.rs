@@ -159,6 +159,25 @@ fn row(
     });
 }
 
+/// A text that counts once it is typed: half a file's name is none.
+fn text(ui: &mut egui::Ui, value: &mut String) {
+    let id = ui.scope_id().with("typed");
+    let typed = ui.data(|data| data.get_temp(id));
+    let mut typed = typed.unwrap_or_else(|| value.clone());
+    let field = ui.add(egui::TextEdit::singleline(&mut typed).desired_width(136.0));
+    if field.lost_focus() {
+        value.clone_from(&typed);
+    }
+    let is_typing = field.has_focus();
+    ui.data_mut(|data| {
+        if is_typing {
+            data.insert_temp(id, typed);
+        } else {
+            data.remove::<String>(id);
+        }
+    });
+}
+
 /// `refused`: why a choice is impossible beside the other settings.
 fn edit(
     ui: &mut egui::Ui,
@@ -208,7 +227,7 @@ fn edit(
             }
         }
         (Kind::File | Kind::Text, Value::String(path)) => {
-            ui.add(egui::TextEdit::singleline(path).desired_width(136.0));
+            text(ui, path);
         }
         (_, other) => {
             ui.label(other.to_string());

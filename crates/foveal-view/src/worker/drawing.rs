@@ -1,8 +1,8 @@
 //! Device, scene and up to two renderers: the one that is asked about, and its reference.
 
 use foveal::{
-    AdapterStats, EnvironmentSource, FrameStats, Gpu, RateCombine, RateSource, Renderer, Settings,
-    Shading,
+    AdapterStats, EnvironmentSource, Error, FrameStats, Gpu, RateCombine, RateSource, Renderer,
+    Settings, Shading,
 };
 use foveal_scene::{Camera, Clip, Scene, printable};
 use pollster::block_on;
@@ -75,13 +75,28 @@ impl Drawing {
         }
     }
 
-    /// The next frame is drawn on a new device.
-    pub(super) fn give_up_device(&mut self) {
+    /// After an error: what it may have spoilt is made anew before the next frame, the device
+    /// included where it is the device's. A file that cannot be read has spoilt nothing.
+    pub(super) fn give_up(&mut self, error: &anyhow::Error) {
+        let Some(error) = error.downcast_ref() else {
+            return;
+        };
+        self.give_up_sides();
+        match error {
+            Error::Limit { .. }
+            | Error::Setting { .. }
+            | Error::NoTexels { .. }
+            | Error::Environment { .. } => {}
+            _ => self.gpu = None,
+        }
+    }
+
+    /// The next frame is drawn by new renderers.
+    fn give_up_sides(&mut self) {
         self.chosen = None;
         self.reference = None;
         self.reference_drawn = None;
         self.measuring = None;
-        self.gpu = None;
     }
 
     /// Loads a scene; the old one stays where that fails.
@@ -116,10 +131,7 @@ impl Drawing {
         self.scene = Some(scene);
         self.clip = clip;
         self.own_lights = own_lights;
-        self.chosen = None;
-        self.reference = None;
-        self.reference_drawn = None;
-        self.measuring = None;
+        self.give_up_sides();
         Ok(loaded)
     }
 
@@ -212,10 +224,7 @@ impl Drawing {
         }
         self.clip = clip.clone();
         // What moves may be another part of the scene.
-        self.chosen = None;
-        self.reference = None;
-        self.reference_drawn = None;
-        self.measuring = None;
+        self.give_up_sides();
     }
 
     /// The object that a ray meets.
@@ -435,5 +444,49 @@ mod tests {
         assert_eq!(used_image(&second), None);
         let combined = second.with(|s| s.coarse.combine = RateCombine::Finer);
         assert_eq!(used_image(&combined), Some("rates.png"));
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_read_leaves_device_and_renderer() {
+        let host = Host {
+            load: Box::new(|_| {
+                let scene = foveal_generate::cornell();
+                let camera = scene.cameras[0].clone();
+                let clip = Clip::default();
+                Ok(Loaded {
+                    scene,
+                    camera,
+                    clip,
+                })
+            }),
+            environment: |_| anyhow::bail!("there is no such file"),
+            ..crate::app::tests::host()
+        };
+        let mut drawing = Drawing::default();
+        let loaded = drawing.load(&host, "cornell").unwrap();
+        let mut request = Request {
+            settings: Settings::default().with(|s| {
+                s.picture.width = 32;
+                s.picture.height = 32;
+            }),
+            reference: None,
+            camera: loaded.start,
+            frozen: false,
+            boxes: false,
+            depth: false,
+            time_s: 0.0,
+            clip: Clip::default(),
+            always: false,
+        };
+        assert!(drawing.draw(&host, &request, 0).unwrap().is_some());
+        request.settings.lighting.environment = EnvironmentSource::Image;
+        let error = drawing.draw(&host, &request, 0).unwrap_err();
+        drawing.give_up(&error);
+        assert!(drawing.gpu.is_some() && drawing.chosen.is_some());
+        let lost = Error::DeviceLost {
+            reason: "a test".to_owned(),
+        };
+        drawing.give_up(&lost.into());
+        assert!(drawing.gpu.is_none() && drawing.chosen.is_none());
     }
 }
