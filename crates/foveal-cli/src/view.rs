@@ -54,7 +54,7 @@ fn host(args: &Args) -> anyhow::Result<Host> {
     if args.scene == "-" {
         return usage("a window does not read its scene from standard input; name a file");
     }
-    let settings = args.settings.resolve()?;
+    let (settings, is_sized) = args.settings.resolve_sized()?;
     gpu::check(args.adapter.as_deref())?;
     let (first, camera) = (args.scene.clone(), args.camera.clone());
     let point_lights = args.point_lights;
@@ -108,7 +108,7 @@ fn host(args: &Args) -> anyhow::Result<Host> {
     Ok(Host {
         scene: args.scene.clone(),
         generated: generate::NAMES.map(str::to_owned).to_vec(),
-        fit: !args.settings.gives_size(),
+        fit: !is_sized,
         settings,
         adapter: args.adapter.clone(),
         window: args.window,

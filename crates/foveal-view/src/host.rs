@@ -127,8 +127,8 @@ pub struct Host {
     pub record: Box<Record>,
     /// Why videos cannot be recorded; `None` where they can.
     pub no_video: Option<String>,
-    /// Reads a settings file.
-    pub read_settings: fn(&Path) -> anyhow::Result<Settings>,
+    /// Reads a settings file, and whether it says how large the picture is.
+    pub read_settings: fn(&Path) -> anyhow::Result<(Settings, bool)>,
     /// The picture that the settings name as the source of their rate map.
     pub rate_image: fn(&Settings) -> anyhow::Result<Option<RateImage>>,
     /// The environment that the settings name the file of.

@@ -63,6 +63,14 @@ pub(crate) struct Hands {
     pub(crate) elapsed_s: f32,
 }
 
+impl Hands {
+    /// How far keys push in this moment at a speed of 1.
+    fn way(&self) -> Vec3 {
+        let hurry = if self.hurry { 4.0 } else { 1.0 };
+        self.push.clamp_length_max(1.0) * (hurry * self.elapsed_s)
+    }
+}
+
 /// A camera that is moved.
 #[derive(Clone, Debug)]
 pub(crate) struct Navigator {
@@ -203,8 +211,7 @@ impl Navigator {
             return false;
         }
         self.turn(drag);
-        let hurry = if hands.hurry { 4.0 } else { 1.0 };
-        let way = hands.push.clamp_length_max(1.0) * self.speed_m_s * hurry * hands.elapsed_s;
+        let way = hands.way() * self.speed_m_s;
         let eye = self.camera.eye();
         let turned = self.turned();
         let step =
@@ -227,7 +234,7 @@ impl Navigator {
         let turned = self.turned();
         let (right, up) = (turned.x_axis.truncate(), turned.y_axis.truncate());
         let by = hands.shift * (self.radius_m * 0.0015);
-        let push = hands.push * (self.radius_m * hands.elapsed_s);
+        let push = hands.way() * self.radius_m;
         pivot += up * (by.y + push.y) - right * by.x + right * push.x;
         self.radius_m *= 0.9f32.powf(hands.scroll) * (1.0 - push.z / self.radius_m).max(0.5);
         self.radius_m = self.radius_m.max(1e-4);
@@ -274,6 +281,25 @@ mod tests {
         let way = navigator.camera().eye() - eye;
         assert!((way.normalize() - looks).length() < 1e-4, "{way}, {looks}");
         assert!((way.length() - 0.5 * navigator.speed_m_s).abs() < 1e-4);
+    }
+
+    #[test]
+    fn shift_moves_four_times_as_far_in_either_mode() {
+        for mode in [Mode::Fly, Mode::Orbit] {
+            let way = |hurry| {
+                let mut navigator = navigator();
+                navigator.mode = mode;
+                let before = navigator.camera().eye();
+                navigator.step(&Hands {
+                    push: Vec3::new(1.0, 1.0, 0.0),
+                    hurry,
+                    elapsed_s: 0.1,
+                    ..Hands::default()
+                });
+                navigator.camera().eye() - before
+            };
+            assert!((way(true) - 4.0 * way(false)).length() < 1e-3, "{mode:?}");
+        }
     }
 
     #[test]

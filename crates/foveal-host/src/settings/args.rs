@@ -37,6 +37,11 @@ fn is_part_of_size(key: &str) -> bool {
     matches!(key, "width" | "height")
 }
 
+/// Whether these settings say how large the picture is.
+pub(super) fn gives_size(given: &Table) -> bool {
+    given.keys().any(|key| is_part_of_size(key))
+}
+
 impl clap::Args for SettingsArgs {
     fn augment_args(command: Command) -> Command {
         let defaults = Table::try_from(Settings::default()).unwrap_or_default();
@@ -220,11 +225,6 @@ impl clap::FromArgMatches for SettingsArgs {
 }
 
 impl SettingsArgs {
-    /// Whether flags or file say how large the picture is.
-    pub fn gives_size(&self) -> bool {
-        self.file.is_some() || self.given.keys().any(|key| is_part_of_size(key))
-    }
-
     /// As the flag `--key value` does.
     pub fn set(&mut self, key: &str, value: &str) {
         self.given.insert(key.to_owned(), value.into());

@@ -6,7 +6,7 @@ use anyhow::{Context, anyhow};
 use foveal::Settings;
 use toml::Table;
 
-use super::args::SettingsArgs;
+use super::args::{SettingsArgs, gives_size};
 
 impl SettingsArgs {
     /// The settings that hold.
@@ -14,13 +14,21 @@ impl SettingsArgs {
     /// # Errors
     /// Where the file cannot be read, and where a value makes no sense whatever the device is.
     pub fn resolve(&self) -> anyhow::Result<Settings> {
-        let below = match &self.file {
+        Ok(self.resolve_sized()?.0)
+    }
+
+    /// The settings that hold, and whether flags or file say how large the picture is.
+    ///
+    /// # Errors
+    /// As [`SettingsArgs::resolve`].
+    pub fn resolve_sized(&self) -> anyhow::Result<(Settings, bool)> {
+        let (below, is_sized) = match &self.file {
             Some(path) => read(path)?,
-            None => Settings::default(),
+            None => (Settings::default(), false),
         };
         let settings = with(&below, &self.given)?;
         check(&settings)?;
-        Ok(settings)
+        Ok((settings, is_sized || gives_size(&self.given)))
     }
 }
 
@@ -45,14 +53,16 @@ pub fn check(settings: &Settings) -> anyhow::Result<()> {
     Ok(settings.validate(&boundless)?)
 }
 
-/// Reads a settings file.
+/// Reads a settings file, and whether it says how large the picture is.
 ///
 /// # Errors
 /// Where it cannot be read, and where it is wrong, with line and key.
-pub fn read(path: &Path) -> anyhow::Result<Settings> {
+pub fn read(path: &Path) -> anyhow::Result<(Settings, bool)> {
     let text = crate::text_file::read(path)
         .with_context(|| format!("cannot read the settings file '{}'", path.display()))?;
-    from_text(&text, &path.display().to_string())
+    let settings = from_text(&text, &path.display().to_string())?;
+    let given: Table = toml::from_str(&text)?;
+    Ok((settings, gives_size(&given)))
 }
 
 /// Reads the text of a settings file of this name.

@@ -131,9 +131,16 @@ mod tests {
     fn a_dropped_folder_is_listed_and_settings_are_read() {
         let mut app = app();
         let host = std::sync::Arc::get_mut(&mut app.host).unwrap();
-        host.read_settings = |_| Ok(foveal::Settings::default());
+        host.read_settings = |path| {
+            let is_sized = path.ends_with("sized.toml");
+            Ok((foveal::Settings::default(), is_sized))
+        };
         let context = egui::Context::default();
+        app.take_files(&context, paths(&["/sized.toml"]));
+        assert!(!app.display.fit);
+        app.display.fit = true;
         app.take_files(&context, paths(&["/home/eva", "/quick.toml"]));
+        assert!(app.display.fit);
         let folder = app
             .browser
             .as_ref()

@@ -40,9 +40,9 @@ impl App {
     /// Reads settings from a file, which is the one that they are saved to then.
     pub(crate) fn load_settings(&mut self, context: &egui::Context, file: String) {
         match (self.host.read_settings)(Path::new(&file)) {
-            Ok(settings) => {
+            Ok((settings, is_sized)) => {
                 // A file's size holds; what follows the window has none of its own.
-                self.display.fit = false;
+                self.display.fit &= !is_sized;
                 self.use_settings(&settings);
                 self.say(context, format!("Settings loaded: {file}"));
                 self.settings_file = file;

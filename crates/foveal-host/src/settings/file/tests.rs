@@ -183,6 +183,30 @@ fn flags_win_over_the_file_and_the_file_over_the_defaults() {
 }
 
 #[test]
+fn a_size_is_given_by_a_flag_or_by_a_file_that_names_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.toml");
+    for (text, of_file) in [
+        ("exposure = 1.0", false),
+        ("height = 20", true),
+        ("", false),
+    ] {
+        std::fs::write(&path, text).unwrap();
+        for (size, is_given) in [(None, of_file), (Some("30x20"), true)] {
+            let args = SettingsArgs {
+                file: Some(path.clone()),
+                given: size.map_or_else(Table::new, |_| "width = 30".parse().unwrap()),
+            };
+            assert_eq!(
+                args.resolve_sized().unwrap().1,
+                is_given,
+                "{text}, {size:?}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_wrong_settings_file_is_named_with_line_and_key() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("s.toml");
