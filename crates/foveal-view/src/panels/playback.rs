@@ -51,7 +51,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
                         ui.selectable_value(&mut app.display.clip, value, name(number, clip));
                     }
                     ui.selectable_value(&mut app.display.clip, Clip::All, "all")
-                        .on_hover_text("All at once, each looped over its own length");
+                        .on_hover_text("All at once: each is looped over its own length, and all begin anew after the longest");
                 })
                 .response
                 .on_hover_text("The animation that plays");
