@@ -20,6 +20,7 @@ mod layers;
 mod margin;
 mod near_cut;
 mod patch;
+mod place;
 mod points;
 pub(crate) mod polygon;
 pub(crate) mod scratch;
