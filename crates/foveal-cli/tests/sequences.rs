@@ -341,3 +341,25 @@ fn parts_of_a_sequence_are_drawn_by_number() {
         assert_eq!(drawn.collect::<Vec<_>>(), expected);
     }
 }
+
+/// Light that is kept from frame to frame makes pictures depend on those before.
+#[test]
+fn a_part_that_warms_up_over_the_frames_before_it_is_the_same_as_in_the_whole() {
+    let folder = folder();
+    let here = folder.path();
+    moving_triangle(here);
+    let words = "render triangle.gltf --path sway --point-lights 4 --fps 8 --shading coarse \
+                 --display 60 --rate radii --composite light";
+    let words: Vec<&str> = words.split_whitespace().chain(SIZE).collect();
+    let render = |output: &str, more: &[&str]| {
+        succeed(here, &[&words[..], &["-o", output], more].concat());
+    };
+    render("whole_#.png", &["--frames", "6"]);
+    render("part_#.png", &["--frames", "4..6", "--warmup", "4"]);
+    render("cold_#.png", &["--frames", "4..6"]);
+    for frame in [4, 5] {
+        let of = |name: &str| bytes(here, &format!("{name}_{frame}.png"));
+        assert!(of("whole") == of("part"), "{frame}");
+        assert!(of("whole") != of("cold"), "{frame}: nothing is kept");
+    }
+}

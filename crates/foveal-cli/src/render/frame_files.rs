@@ -64,14 +64,43 @@ impl FramePattern {
     }
 }
 
-/// One picture to draw: its number, its moment, the moment before it, its file.
+/// One picture to draw: its number, its moment, its file.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FrameJob {
     pub(super) frame: u32,
-    pub(super) time_s: f32,
-    pub(super) previous_time_s: f32,
+    pub(super) moment: Moment,
     /// Where the picture goes; `None` where it is a part of a video alone.
     pub(super) file: Option<PathBuf>,
+}
+
+/// When a picture is, and hence when those before it are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Moment {
+    /// A frame of a sequence, so many frames a second.
+    Frame(u32, f32),
+    /// A time in seconds, in a film of so many frames a second.
+    Time(f32, f32),
+    /// A time in seconds, at which everything rests.
+    Rest(f32),
+}
+
+impl Moment {
+    /// Time in seconds.
+    pub(super) fn time_s(self) -> f32 {
+        self.before_s(0)
+    }
+
+    /// Time in seconds of the picture that is `frames` earlier. Nothing is before 0.
+    pub(super) fn before_s(self, frames: u32) -> f32 {
+        match self {
+            Self::Frame(frame, fps) => moment(frame.saturating_sub(frames), fps),
+            Self::Time(time_s, fps) => {
+                let earlier_s = f64::from(frames) / f64::from(fps);
+                (f64::from(time_s) - earlier_s).max(0.0) as f32
+            }
+            Self::Rest(time_s) => time_s,
+        }
+    }
 }
 
 /// The frames of a range. Each depends on its own number alone, so that any sub-range gives the
@@ -84,22 +113,10 @@ pub(super) fn sequence(
     range
         .map(|frame| FrameJob {
             frame,
-            time_s: moment(frame, fps),
-            previous_time_s: moment(frame.saturating_sub(1), fps),
+            moment: Moment::Frame(frame, fps),
             file: pattern.map(|pattern| pattern.file(frame)),
         })
         .collect()
-}
-
-/// A single picture at a moment.
-pub(super) fn still(time_s: f32, fps: f32, file: &Path) -> FrameJob {
-    let previous_time_s = (f64::from(time_s) - 1.0 / f64::from(fps)).max(0.0) as f32;
-    FrameJob {
-        frame: 0,
-        time_s,
-        previous_time_s,
-        file: Some(file.to_owned()),
-    }
 }
 
 #[cfg(test)]
@@ -142,7 +159,15 @@ mod tests {
         let whole = sequence(0..50, 29.97, Some(&pattern));
         let part = sequence(20..30, 29.97, Some(&pattern));
         assert_eq!(whole[20..30], part);
-        assert_eq!(part[1].previous_time_s, part[0].time_s);
-        assert_eq!(whole[0].previous_time_s, 0.0);
+        assert_eq!(part[1].moment.before_s(1), part[0].moment.time_s());
+        assert_eq!(whole[0].moment.before_s(1), 0.0);
+    }
+
+    #[test]
+    fn moments_before_a_picture_are_a_frame_apart_and_none_is_before_the_start() {
+        let before = |moment: Moment| [3, 2, 1, 0].map(|frames| moment.before_s(frames));
+        assert_eq!(before(Moment::Frame(2, 4.0)), [0.0, 0.0, 0.25, 0.5]);
+        assert_eq!(before(Moment::Time(0.625, 4.0)), [0.0, 0.125, 0.375, 0.625]);
+        assert_eq!(before(Moment::Rest(0.5)), [0.5; 4]);
     }
 }

@@ -31,7 +31,7 @@ use foveal_host::video::Video;
 use foveal_host::{atomic_file, console, gpu, scene_source};
 
 pub(crate) use args::Args;
-use frame_files::{FrameJob, FramePattern};
+use frame_files::{FrameJob, FramePattern, Moment};
 use sharing::Turns;
 use stats::{CommandStats, MedianStats, NamedSceneStats, NumberedFrameStats, RunStats};
 
@@ -86,8 +86,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         warnings: drawing.scene.warnings.len() as u64,
         counts: drawing.renderer.scene_stats(),
     };
-    for _ in 0..args.warmup {
-        draw(&mut drawing, &jobs[0])?;
+    for frames in (1..=args.warmup).rev() {
+        draw(&mut drawing, jobs[0].moment, frames)?;
     }
     let video = match &args.video {
         Some(file) => Some(Video::create(
@@ -177,11 +177,17 @@ fn jobs(args: &Args) -> anyhow::Result<Vec<FrameJob>> {
             Ok(frame_files::sequence(range.clone(), fps, pattern.as_ref()))
         }
         None => {
-            let file = args.output().unwrap_or(Path::new(""));
-            let mut job = frame_files::still(args.frames.time.unwrap_or(0.0), fps, file);
-            if args.frames.still {
-                job.previous_time_s = job.time_s;
-            }
+            let time_s = args.frames.time.unwrap_or(0.0);
+            let moment = if args.frames.still {
+                Moment::Rest(time_s)
+            } else {
+                Moment::Time(time_s, fps)
+            };
+            let job = FrameJob {
+                frame: 0,
+                moment,
+                file: args.output().map(Path::to_owned),
+            };
             Ok(vec![job])
         }
     }
@@ -305,13 +311,15 @@ impl Written {
     }
 }
 
-/// Draws one frame of the sequence: again where anti-aliasing left surfaces out in want of room,
-/// which it has from then on, so that the picture does not depend on the frames before.
-fn draw(drawing: &mut Drawing, job: &FrameJob) -> anyhow::Result<FrameStats> {
-    let mut figures = drawing.draw_moment(job.time_s, job.previous_time_s)?;
+/// Draws the picture that is so many frames before a moment: again where anti-aliasing left surfaces
+/// out in want of room, which it has from then on, so that the picture does not depend on the frames
+/// before.
+fn draw(drawing: &mut Drawing, moment: Moment, frames: u32) -> anyhow::Result<FrameStats> {
+    let (time_s, previous_time_s) = (moment.before_s(frames), moment.before_s(frames + 1));
+    let mut figures = drawing.draw_moment(time_s, previous_time_s)?;
     while figures.surfaces_left_out > 0 && !follows_on(drawing.renderer.settings()) {
         let before = figures.surfaces_left_out;
-        figures = drawing.draw_moment(job.time_s, job.previous_time_s)?;
+        figures = drawing.draw_moment(time_s, previous_time_s)?;
         if figures.surfaces_left_out >= before {
             break;
         }
@@ -334,7 +342,7 @@ fn draw_all(
     let mut noticed = quiet;
     while let Some((job, claim)) = turns.next()? {
         let mut stages = Vec::new();
-        let figures = timed(&mut stages, "first_frame", || draw(drawing, &job))
+        let figures = timed(&mut stages, "first_frame", || draw(drawing, job.moment, 0))
             .map_err(|error| anyhow!("frame {}: {error:#}", job.frame))?;
         if frames.is_empty() {
             // A driver that draws on the processor has compiled shaders.
@@ -356,14 +364,15 @@ fn draw_all(
             load_ms.extend(stages);
             first_picture_ms = now_ms();
         }
+        let time_s = job.moment.time_s();
         frames.push(NumberedFrameStats {
             frame: job.frame,
-            time_s: job.time_s,
+            time_s,
             file: match &job.file {
                 Some(file) => file.display().to_string(),
                 None => written.video_name.clone(),
             },
-            camera: drawing.viewpoint.at(&drawing.scene, job.time_s).name,
+            camera: drawing.viewpoint.at(&drawing.scene, time_s).name,
             figures,
         });
         progress.inc(1);
