@@ -142,7 +142,8 @@ fn stand_in(folder: &Path, script: &str) -> String {
     use std::os::unix::fs::PermissionsExt;
     let bin = folder.join("bin");
     fs::create_dir_all(&bin).unwrap();
-    let listed = "[ \"$2\" != -encoders ] || { echo libx264; exit 0; }";
+    let listed = "[ \"$2\" != -encoders ] || { echo libx264; exit 0; }\n\
+                  [ \"$1\" != -version ] || exit 0";
     fs::write(
         bin.join("ffmpeg"),
         format!("#!/bin/sh\n{listed}\n{script}\n"),
@@ -211,17 +212,30 @@ fn a_video_that_fails_leaves_nothing_and_says_why() {
         "{}",
         stderr(&output)
     );
-    let output = command(here, &words).env("PATH", here).output().unwrap();
-    assert_eq!(output.status.code(), Some(1));
-    assert!(
-        stderr(&output).contains("not installed"),
-        "{}",
-        stderr(&output)
-    );
     assert_eq!(names(here), ["bin"]);
     fail(
         here,
         &render(&["--frames", "0..2", "--video", "none/film.mp4"]),
         &["none"],
     );
+}
+
+#[test]
+fn what_keeps_a_video_from_being_written_is_said_before_a_scene_is_loaded() {
+    let folder = folder();
+    let here = folder.path();
+    let said = |more: &[&str]| {
+        let words = [&["render", "none.glb", "--frames", "0..9"], more].concat();
+        let output = command(here, &words).env("PATH", here).output().unwrap();
+        assert!([Some(1), Some(2)].contains(&output.status.code()));
+        stderr(&output)
+    };
+    let missing = said(&["--video", "film.mp4"]);
+    assert!(missing.contains("not installed"), "{missing}");
+    let nameless = said(&["--video", "film"]);
+    assert!(nameless.contains(".mp4"), "{nameless}");
+    // The film of one part would take the place of another's.
+    let part = said(&["--part", "0/3", "--video", "film.mp4"]);
+    assert!(part.contains("--part"), "{part}");
+    assert_eq!(names(here), [""; 0]);
 }

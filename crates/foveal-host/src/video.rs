@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStderr, ChildStdin, Command, Stdio};
+use std::process::{Child, ChildStderr, ChildStdin, Command, ExitStatus, Stdio};
 use std::thread::JoinHandle;
 
 use anyhow::{Context, bail};
@@ -29,13 +29,35 @@ pub struct Video {
 
 /// Whether ffmpeg is there.
 pub fn is_available() -> bool {
-    let found = Command::new(FFMPEG)
+    ask_version().is_ok_and(|status| status.success())
+}
+
+/// Checks that there is a program that can write a video to `path`.
+///
+/// # Errors
+/// Names the file and the cause: no ffmpeg, a name without an ending.
+pub fn check(path: &Path) -> anyhow::Result<()> {
+    extension(path)?;
+    match ask_version() {
+        Err(error) if error.kind() == ErrorKind::NotFound => bail!(
+            "cannot write the video '{}': it is encoded by the program ffmpeg, which is not installed here (Debian: \
+             apt-get install ffmpeg). Without it write pictures: --output frame_####.png",
+            path.display()
+        ),
+        other => other
+            .map(drop)
+            .with_context(|| format!("cannot start {FFMPEG}")),
+    }
+}
+
+/// Lets ffmpeg say its version to nobody.
+fn ask_version() -> std::io::Result<ExitStatus> {
+    Command::new(FFMPEG)
         .arg("-version")
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
-        .status();
-    found.is_ok_and(|status| status.success())
+        .status()
 }
 
 impl Video {
@@ -46,6 +68,7 @@ impl Video {
     /// # Errors
     /// Names the file and the cause: no ffmpeg, a folder that is not there.
     pub fn create(path: &Path, (width, height): (u32, u32), fps: f32) -> anyhow::Result<Self> {
+        check(path)?;
         crate::atomic_file::check_writable(path)?;
         let ending = extension(path)?;
         let file = Pending::new(path, &format!(".{ending}"))?;
@@ -56,14 +79,8 @@ impl Video {
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(Stdio::piped());
-        let mut encoder = match command.spawn() {
-            Err(error) if error.kind() == ErrorKind::NotFound => bail!(
-                "cannot write the video '{}': it is encoded by the program ffmpeg, which is not installed here (Debian: \
-                 apt-get install ffmpeg). Without it write pictures: --output frame_####.png",
-                path.display()
-            ),
-            other => other.with_context(|| format!("cannot start {FFMPEG}"))?,
-        };
+        let spawned = command.spawn();
+        let mut encoder = spawned.with_context(|| format!("cannot start {FFMPEG}"))?;
         let frames = encoder.stdin.take();
         let complaints = encoder.stderr.take().map(read_to_end);
         Ok(Self {

@@ -114,8 +114,15 @@ pub(crate) struct FrameArgs {
     pub(super) skip_existing: bool,
 
     /// Draw one of N equal parts of the range: I from 0 to N - 1; `auto`: the part of this job in a
-    /// Slurm array, a Kubernetes indexed job or an AWS Batch array (see docs/program.md)
-    #[arg(long, value_name = "I/N|auto", requires = "frames", value_parser = Part::parse)]
+    /// Slurm array, a Kubernetes indexed job or an AWS Batch array (see docs/program.md). Not with
+    /// --video: each job's film would replace the others'
+    #[arg(
+        long,
+        value_name = "I/N|auto",
+        requires = "frames",
+        conflicts_with = "video"
+    )]
+    #[arg(value_parser = Part::parse)]
     part: Option<Part>,
 
     /// Share the frames with all jobs that run the same command in the same folder: each draws

@@ -27,7 +27,7 @@ use foveal_host::linear_picture::{self, PictureFormat};
 use foveal_host::memory;
 use foveal_host::progress::progress_bar;
 use foveal_host::rate_image::rate_image;
-use foveal_host::video::Video;
+use foveal_host::video::{self, Video};
 use foveal_host::{atomic_file, console, gpu, scene_source};
 
 pub(crate) use args::Args;
@@ -53,6 +53,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     for file in first.into_iter().chain(&args.video).chain(&args.stats) {
         atomic_file::check_writable(file)?;
     }
+    args.video.as_deref().map_or(Ok(()), video::check)?;
     atomic_file::remove_abandoned(jobs.iter().filter_map(|job| job.file.as_deref()));
     if jobs.is_empty() {
         if !args.quiet {
