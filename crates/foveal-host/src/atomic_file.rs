@@ -5,7 +5,6 @@
 //! cut, and not another process that works in the same folder.
 
 use std::collections::HashSet;
-use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -143,17 +142,21 @@ fn has_png_end(path: &Path) -> std::io::Result<bool> {
     Ok(end == PNG_END)
 }
 
+/// Most bytes of a file's name in the name of its temporary file, which has a dozen more: systems
+/// allow 255.
+const LONGEST_NAME: usize = 230;
+
 /// Age from which a temporary file is abandoned: far more than writing one takes.
 const ABANDONED: Duration = Duration::from_secs(600);
 
 /// Removes what jobs that were killed left while they wrote `files`, all in one folder: temporary
 /// files that nobody has written to for ten minutes, by the folder's own clock.
 pub fn remove_abandoned<'a>(files: impl IntoIterator<Item = &'a Path>) {
-    let names: HashSet<_> = files.into_iter().collect();
-    let Some(folder) = names.iter().next().map(|file| folder_of(file).to_owned()) else {
+    let mut files = files.into_iter().peekable();
+    let Some(folder) = files.peek().map(|file| folder_of(file).to_owned()) else {
         return;
     };
-    let names: HashSet<_> = names.iter().filter_map(|file| file.file_name()).collect();
+    let names: HashSet<String> = files.map(short_name).collect();
     let now = tempfile::NamedTempFile::new_in(&folder)
         .and_then(|probe| probe.as_file().metadata()?.modified());
     let (Ok(now), Ok(entries)) = (now, fs::read_dir(&folder)) else {
@@ -164,7 +167,7 @@ pub fn remove_abandoned<'a>(files: impl IntoIterator<Item = &'a Path>) {
             .file_name()
             .to_str()
             .and_then(destination_name)
-            .is_some_and(|name| names.contains(OsStr::new(name)));
+            .is_some_and(|name| names.contains(name));
         let modified = entry.metadata().and_then(|metadata| metadata.modified());
         let age = modified.ok().and_then(|time| now.duration_since(time).ok());
         if is_ours && age.is_some_and(|age| age > ABANDONED) {
@@ -173,7 +176,8 @@ pub fn remove_abandoned<'a>(files: impl IntoIterator<Item = &'a Path>) {
     }
 }
 
-/// The name of the file that a temporary file is to become: of `.frame.png.a1B2c3.tmp`, `frame.png`.
+/// The short name of the file that a temporary file is to become: of `.frame.png.a1B2c3.tmp`,
+/// `frame.png`.
 fn destination_name(temporary: &str) -> Option<&str> {
     let (rest, _ending) = temporary.strip_prefix('.')?.rsplit_once('.')?;
     let (name, random) = rest.rsplit_once('.')?;
@@ -195,7 +199,11 @@ fn destination(path: &Path) -> anyhow::Result<PathBuf> {
         Ok(_) => {
             fs::canonicalize(path).with_context(|| format!("cannot write '{}'", path.display()))
         }
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(path.to_owned()),
+        Err(error) if error.kind() == ErrorKind::NotFound => match fs::read_link(path) {
+            // A link to a file that is not there yet.
+            Ok(target) => destination(&folder_of(path).join(target)),
+            Err(_) => Ok(path.to_owned()),
+        },
         Err(error) => Err(error).with_context(|| format!("cannot write '{}'", path.display())),
     }
 }
@@ -207,12 +215,14 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
+/// As much of a file's name as a temporary file has in its own.
+fn short_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name[..name.floor_char_boundary(LONGEST_NAME)].to_owned()
+}
+
 fn temporary(destination: &Path, suffix: &str) -> std::io::Result<tempfile::NamedTempFile> {
-    let name = destination
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy();
-    let prefix = format!(".{name}.");
+    let prefix = format!(".{}.", short_name(destination));
     let mut builder = tempfile::Builder::new();
     builder.prefix(&prefix).suffix(suffix);
     // Temporary files are private by default; this one becomes an ordinary file, which the umask
@@ -346,6 +356,41 @@ mod tests {
         write(&link, b"new").unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read(&file).unwrap(), b"new");
+        // A link to a file that is not there yet.
+        fs::remove_file(&file).unwrap();
+        let second = folder.path().join("second");
+        std::os::unix::fs::symlink("link", &second).unwrap();
+        check_writable(&second).unwrap();
+        write(&second, b"first").unwrap();
+        assert!(fs::symlink_metadata(&second).unwrap().is_symlink());
+        assert_eq!(fs::read(&file).unwrap(), b"first");
+        assert_eq!(names(folder.path()), ["file", "link", "second"]);
+        // One to a folder that is not there, and one to itself.
+        for target in ["none/file", "self"] {
+            let link = folder.path().join("self");
+            std::os::unix::fs::symlink(target, &link).unwrap();
+            let error = check_writable(&link).unwrap_err().to_string();
+            assert!(error.contains("self"), "{error}");
+            fs::remove_file(&link).unwrap();
+        }
+    }
+
+    #[test]
+    fn a_name_may_be_as_long_as_the_system_lets_it() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a".repeat(251), "ä".repeat(125) + "b"] {
+            let path = folder.path().join(name + ".png");
+            check_writable(&path).unwrap();
+            write(&path, b"bytes").unwrap();
+            assert_eq!(fs::read(&path).unwrap(), b"bytes");
+            Pending::new(&path, ".webm").unwrap().finish().unwrap();
+            // Abandoned files are known by as much of the name as they have.
+            let left = temporary(&path, ".tmp").unwrap();
+            let old = std::time::SystemTime::now() - 2 * ABANDONED;
+            left.as_file().set_modified(old).unwrap();
+            remove_abandoned([path.as_path()]);
+            assert!(!left.path().exists());
+        }
     }
 
     #[cfg(unix)]
