@@ -35,13 +35,13 @@ fn displayed(linear: f32) -> f32 {
 fn radiance_exposed_and_encoded_is_the_picture() {
     let folder = folder();
     let here = folder.path();
-    for eyes in [
-        &[][..],
-        &["--stereo", "instanced", "--show", "side-by-side"],
-    ] {
-        let flags = [&["--tone-map", "linear", "--exposure", "1"], eyes].concat();
-        for file in ["a.png", "a.exr", "a.hdr"] {
-            succeed(here, &render(&[&["-o", file], &flags[..]].concat()));
+    let eyes = &["--stereo", "instanced"][..];
+    let shown = &["--stereo", "instanced", "--show", "side-by-side"][..];
+    // Radiance is side by side whether or not that is said.
+    for (eyes, said) in [(&[][..], &[][..]), (shown, shown), (shown, eyes)] {
+        for (file, flags) in [("a.png", eyes), ("a.exr", said), ("a.hdr", said)] {
+            let words = ["-o", file, "--tone-map", "linear", "--exposure", "1"];
+            succeed(here, &render(&[&words[..], flags].concat()));
         }
         let picture = image::open(here.join("a.png")).unwrap().into_rgb8();
         for (file, tolerance) in [("a.exr", 0.6), ("a.hdr", 2.5)] {
@@ -70,6 +70,8 @@ fn radiance_of_what_has_none_is_refused() {
     for (flags, named) in [
         (&["--view", "depth"][..], "--view"),
         (&["--stereo", "instanced", "--show", "anaglyph"], "--show"),
+        (&["--stereo", "instanced", "--show", "flat"], "--show"),
+        (&["--stereo", "instanced", "-o", "flat"], "--show"),
         (&["--render-scale", "0.5"], "--render-scale"),
     ] {
         let output = command(folder.path(), &render(&[&["-o", "a.exr"], flags].concat()));

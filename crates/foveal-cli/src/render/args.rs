@@ -240,7 +240,12 @@ impl Args {
         if settings.picture.view != foveal::DebugView::Final {
             return refuse("--view");
         }
-        if settings.is_stereo() && settings.stereo.output != foveal::Output::SideBySide {
+        let is_shown_so = match settings.stereo.output {
+            foveal::Output::SideBySide => true,
+            foveal::Output::Flat => self.outputs().1.is_none() && !self.settings.gives("show"),
+            _ => false,
+        };
+        if settings.is_stereo() && !is_shown_so {
             return refuse("--show");
         }
         if settings.picture.render_scale != 1.0 {

@@ -225,6 +225,11 @@ impl clap::FromArgMatches for SettingsArgs {
 }
 
 impl SettingsArgs {
+    /// Whether the flag `--key` is given.
+    pub fn gives(&self, key: &str) -> bool {
+        self.given.contains_key(key)
+    }
+
     /// As the flag `--key value` does.
     pub fn set(&mut self, key: &str, value: &str) {
         self.given.insert(key.to_owned(), value.into());
@@ -232,7 +237,7 @@ impl SettingsArgs {
 
     /// As the flag `--key true` does, where that flag is not given.
     pub fn switch_on_by_default(&mut self, key: &str) {
-        if !self.given.contains_key(key) {
+        if !self.gives(key) {
             self.given.insert(key.to_owned(), true.into());
         }
     }
