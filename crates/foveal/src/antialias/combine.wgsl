@@ -17,10 +17,13 @@ override COUNT: u32 = 4u;
 override COARSE: bool = false;
 @group(1) @binding(4) var owner_levels: texture_2d<u32>;
 @group(1) @binding(3) var ordinary: texture_2d<f32>;
+// Entries of the pixels that do not stay as they are.
+@group(1) @binding(5) var<storage, read_write> combined: atomic<u32>;
 
 @compute @workgroup_size(64)
 fn combine(@builtin(global_invocation_id) id: vec3u) {
     let end = min(queue.total, arrayLength(&entries));
+    var count = 0u;
     for (var i = id.x; i < end; i += queue.all_groups.x * 64u) {
         let entry = entries[i];
         if !is_first_of_its_pixel(entry) {
@@ -33,6 +36,7 @@ fn combine(@builtin(global_invocation_id) id: vec3u) {
         var sum = vec4f(0.0);
         var rest = COUNT;
         let of_pixel = entry.samples >> 24u;
+        count += of_pixel;
         for (var k = 0u; k < of_pixel; k++) {
             sum += unpack_half4(sums[i + k]);
             rest -= countOneBits(entries[i + k].samples & 0xffffu);
@@ -45,5 +49,8 @@ fn combine(@builtin(global_invocation_id) id: vec3u) {
         // leave the range of halves. Alpha says that there is something to store.
         let mean = min(sum.rgb / max(sum.a, 1e-7), vec3f(65504.0));
         sums[i] = pack_half4(vec4f(mean, 1.0));
+    }
+    if count > 0u {
+        atomicAdd(&combined, count);
     }
 }

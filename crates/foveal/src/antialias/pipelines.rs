@@ -71,7 +71,11 @@ impl AntialiasPipelines {
             compute,
             &[uniform(), uint, read, read, write],
         );
-        let combine_layout = layout("combination", compute, &[read, read, write, float, uint]);
+        let combine_layout = layout(
+            "combination",
+            compute,
+            &[read, read, write, float, uint, write],
+        );
         let coarse = f64::from(u8::from(!averages_all(settings)));
         let radiance = wgpu::BindingType::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,

@@ -221,7 +221,9 @@ impl AntialiasStage {
             t.sums.as_entire_binding(),
             wgpu::BindingResource::TextureView(&targets.radiance_view),
             wgpu::BindingResource::TextureView(owners),
+            t.number.as_entire_binding(),
         ];
+        recorder.encoder.clear_buffer(&t.number, 0, None);
         let steps = [
             (&p.combine, &p.combine_layout, &bindings[..]),
             (&p.store, &p.store_layout, &bindings[..4]),
@@ -232,6 +234,10 @@ impl AntialiasStage {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &group, &[]);
             pass.dispatch_workgroups_indirect(&t.queue, ALL_GROUPS);
+        }
+        if self.triangles.is_some() {
+            // Surfaces in coarse pixels were not shaded.
+            t.take_evaluations(recorder.encoder);
         }
     }
 

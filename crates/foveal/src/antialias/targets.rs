@@ -69,7 +69,7 @@ pub(crate) struct SampleTargets {
     pub(super) sums: wgpu::Buffer,
     /// An empty queue, and room for a number.
     empty_queue: wgpu::Buffer,
-    number: wgpu::Buffer,
+    pub(super) number: wgpu::Buffer,
     bytes: u64,
     /// Rows of a band.
     rows: u32,
@@ -232,7 +232,7 @@ impl SampleTargets {
             entries: buffer("queue entries", entry_bytes, storage),
             sums: buffer("queue sums", entry_bytes, storage),
             empty_queue,
-            number: buffer("number", 4, wgpu::BufferUsages::empty()),
+            number: buffer("number", 4, storage),
             bytes: u64::from(texels_x) * u64::from(texels_y) * bytes_per_sample(settings)
                 + pixels * TALLY_BYTES
                 + entry_bytes * 2
@@ -259,6 +259,12 @@ impl SampleTargets {
         encoder.copy_buffer_to_buffer(&self.queue, total, &self.number, 0, 4);
         encoder.copy_buffer_to_buffer(&self.number, 0, &self.queue, start, 4);
         encoder.copy_buffer_to_buffer(&self.empty_queue, 0, &self.queue, 0, 4);
+    }
+
+    /// Takes the number for the evaluations of the queue's entries.
+    pub(super) fn take_evaluations(&self, encoder: &mut wgpu::CommandEncoder) {
+        let evaluations = std::mem::offset_of!(QueueUniform, evaluations) as u64;
+        encoder.copy_buffer_to_buffer(&self.number, 0, &self.queue, evaluations, 4);
     }
 
     /// Bytes of all that depends on the frame's size.

@@ -355,12 +355,14 @@ fn assert_fine_where_the_level_is_0(antialiased: &Settings, coarse: &Settings) {
     let draw = |settings: &Settings| rendered(&scene, &scene.cameras[0], settings);
     let radiance =
         |renderer: &Renderer| -> Vec<[u16; 4]> { texels(&renderer.targets().radiance_view) };
-    let both = draw(coarse);
+    let mut both = draw(coarse);
+    let stats = both.redraw(&scene.cameras[0]);
     let antialiased = radiance(&draw(antialiased));
     let owners = &both.targets().coarse.as_ref().expect("coarse").rate.owner;
     let across = owners.texture.width();
     let levels: Vec<u8> = texels(&owners.whole);
     let (mut fine, mut kept) = (0, 0);
+    let mut evaluations = stats.coarse.expect("coarse").shaded_samples();
     let tally = tally(&both);
     let both = radiance(&both);
     for (i, (x, y)) in pixels().enumerate() {
@@ -371,7 +373,12 @@ fn assert_fine_where_the_level_is_0(antialiased: &Settings, coarse: &Settings) {
         } else {
             kept += usize::from(tally[i][0] > 1);
         }
+        // Stored sub-samples are shaded before levels are known.
+        if level == 0 || coarse.geometry.path == Geometry::Gbuffer {
+            evaluations += u64::from(tally[i][0]) - 1;
+        }
     }
+    assert_eq!(stats.shaded_samples, evaluations);
     assert!(
         fine > 5 && kept > 5,
         "{fine} fine edges, {kept} coarse ones"
