@@ -81,7 +81,8 @@ pub struct CoarseStats {
     /// What stood in for it in the same frame: rate map, reprojection, shading of samples,
     /// composite.
     pub coarse_ms: f64,
-    /// A sentence where coarse shading has turned itself off; else empty.
+    /// A sentence where coarse shading has turned itself off, or where the picture is too large for
+    /// the light history; else empty.
     pub notice: String,
 }
 

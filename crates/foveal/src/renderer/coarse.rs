@@ -34,6 +34,8 @@ pub(super) struct CoarseStages {
     /// Stands in for both where light is kept from frame to frame.
     pub(super) history: Option<HistoryStage>,
     pub(super) overlay: Option<OverlayPass>,
+    /// Says that the device cannot keep light; else empty.
+    without_history: String,
     /// `None`: it stays on, and is not compared.
     balance: Option<Balance>,
     /// What the last frame did.
@@ -69,6 +71,7 @@ impl CoarseStages {
             composite: CompositePass::new(gpu, settings, frame),
             history,
             overlay,
+            without_history: HistoryStage::notice(gpu, settings),
             balance: weighs.then(|| {
                 // What is forced has no use for comparisons, and benches would time them.
                 let compares = gpu.tells_times() && !forced;
@@ -126,13 +129,18 @@ impl CoarseStages {
         }
     }
 
-    /// Puts what is known of cost and gain into a frame's `stats`, after passes that took `gpu_ms`.
+    /// Puts what is known of cost and gain, and what there is to say, into a frame's `stats`, after
+    /// passes that took `gpu_ms`.
     pub(super) fn weigh(
         &mut self,
         settings: &Settings,
         gpu_ms: &[Timing],
         stats: CoarseStats,
     ) -> CoarseStats {
+        let stats = CoarseStats {
+            notice: self.without_history.clone(),
+            ..stats
+        };
         let Some(balance) = &mut self.balance else {
             return stats;
         };
@@ -144,7 +152,10 @@ impl CoarseStages {
         CoarseStats {
             full_ms: last.full_ms,
             coarse_ms: last.rated_ms + last.extra_ms,
-            notice: balance.notice("coarse shading"),
+            notice: match balance.notice("coarse shading") {
+                off if off.is_empty() => stats.notice,
+                off => off,
+            },
             ..stats
         }
     }

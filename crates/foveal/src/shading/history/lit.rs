@@ -9,6 +9,24 @@ pub(crate) const ROUND: u32 = 16;
 
 /// Whether these settings keep a light history on this device.
 pub(super) fn is_used(gpu: &Gpu, settings: &Settings) -> bool {
+    is_wanted(settings) && !gpu.is_reduced() && fits(&gpu.device.limits(), settings)
+}
+
+/// A sentence where the picture is too large for the light history that these settings ask for; else
+/// empty.
+pub(super) fn notice(limits: &wgpu::Limits, settings: &Settings) -> String {
+    if !is_wanted(settings) || fits(limits, settings) {
+        return String::new();
+    }
+    let pixels = limits.max_storage_buffer_binding_size / SAMPLE_BYTES;
+    format!(
+        "no light is kept from frame to frame (--history), and every sample is reshaded: this device keeps that of \
+         pictures of up to {pixels} pixels, {LARGEST_SIDE} a side"
+    )
+}
+
+/// Whether these settings keep a light history where the device can.
+fn is_wanted(settings: &Settings) -> bool {
     settings.coarse.history
         // Other views of a lit frame show its tiles.
         && settings.picture.view == DebugView::Final
@@ -16,8 +34,6 @@ pub(super) fn is_used(gpu: &Gpu, settings: &Settings) -> bool {
         && settings.coarse.composite == Composite::Light
         && settings.coarse.sample == CoarseSample::Center
         && settings.coarse.backend != CoarseBackend::Stencil
-        && !gpu.is_reduced()
-        && fits(gpu, settings)
 }
 
 /// What a frame does.
@@ -35,11 +51,38 @@ const LARGEST_SIDE: u32 = 1 << 14;
 pub(super) const SAMPLE_BYTES: u64 = 8;
 
 /// Whether the lists of a frame of this size can be bound.
-pub(super) fn fits(gpu: &Gpu, settings: &Settings) -> bool {
+fn fits(limits: &wgpu::Limits, settings: &Settings) -> bool {
     let (width, height) = EyeLayout::of(settings).target_size();
     if width.max(height) > LARGEST_SIDE {
         return false;
     }
     let bytes = u64::from(width) * u64::from(height) * SAMPLE_BYTES;
-    bytes <= gpu.device.limits().max_storage_buffer_binding_size
+    bytes <= limits.max_storage_buffer_binding_size
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_too_large_for_the_device_is_said() {
+        let limits = wgpu::Limits {
+            max_storage_buffer_binding_size: 128 << 20,
+            ..wgpu::Limits::default()
+        };
+        let notice = |width, height, history| {
+            let settings = Settings::default().with(|s| {
+                (s.picture.width, s.picture.height) = (width, height);
+                s.shading.mode = Shading::Coarse;
+                s.coarse.history = history;
+            });
+            notice(&limits, &settings)
+        };
+        assert_eq!(notice(4096, 4096, true), "");
+        assert_eq!(notice(4096, 4097, false), "");
+        for (width, height) in [(4096, 4097), (16_385, 16)] {
+            let said = notice(width, height, true);
+            assert!(said.contains("16777216 pixels, 16384 a side"), "{said}");
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::HistoryTargets;
 use super::changed::Changed;
-use super::lit::{Lit, ROUND, is_used};
+use super::lit::{Lit, ROUND, is_used, notice};
 use super::passes::HistoryParameters;
 use super::passes::HistoryPasses;
 use crate::gpu::Gpu;
@@ -57,6 +57,11 @@ impl HistoryStage {
     /// Whether light is reprojected.
     pub(crate) fn is_used(gpu: &Gpu, settings: &Settings) -> bool {
         is_used(gpu, settings)
+    }
+
+    /// A sentence where it is not, because the device cannot keep so much; else empty.
+    pub(crate) fn notice(gpu: &Gpu, settings: &Settings) -> String {
+        notice(&gpu.device.limits(), settings)
     }
 
     /// `None` where light is not reprojected.
