@@ -11,6 +11,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 use std::process::Stdio;
+use std::time::{Duration, SystemTime};
 
 use common::{command, fail, folder, moving_triangle, names, stderr, succeed};
 
@@ -164,9 +165,17 @@ fn a_video_gets_every_frame() {
         here,
         "echo \"$@\" > words; for last; do :; done; cat > \"$last\"",
     );
+    // Of runs that were killed two days ago.
+    let old = SystemTime::now() - Duration::from_secs(2 * 86_400);
+    for left in [".film.mp4.a1B2c3.mp4", ".s.json.a1B2c3.tmp"] {
+        let left = fs::File::create(here.join(left)).unwrap();
+        left.set_modified(old).unwrap();
+    }
     let words = render(&[
         "--path",
         "turntable",
+        "--stats",
+        "s.json",
         "--fps",
         "1",
         "--frames",
@@ -196,7 +205,9 @@ fn a_video_gets_every_frame() {
     // Nothing else is left.
     assert_eq!(
         names(here),
-        ["bin", "f_0.png", "f_1.png", "f_2.png", "film.mp4", "words"]
+        [
+            "bin", "f_0.png", "f_1.png", "f_2.png", "film.mp4", "s.json", "words"
+        ]
     );
 }
 

@@ -31,7 +31,7 @@ pub fn check_writable(path: &Path) -> anyhow::Result<()> {
             folder.display()
         );
     }
-    temporary(&destination, ".tmp")
+    temporary(&destination, SUFFIX)
         .map(drop)
         .with_context(|| format!("cannot write '{}'", path.display()))
 }
@@ -63,7 +63,7 @@ pub fn write_with(
 ) -> anyhow::Result<()> {
     let destination = destination(path)?;
     let written = || -> std::io::Result<()> {
-        let mut file = temporary(&destination, ".tmp")?;
+        let mut file = temporary(&destination, SUFFIX)?;
         content(file.as_file_mut())?;
         file.as_file().sync_all()?;
         file.persist(&destination).map_err(|e| e.error)?;
@@ -142,6 +142,9 @@ fn has_png_end(path: &Path) -> std::io::Result<bool> {
     Ok(end == PNG_END)
 }
 
+/// How the names of temporary files end, but for those of other programs.
+const SUFFIX: &str = ".tmp";
+
 /// Most bytes of a file's name in the name of its temporary file, which has a dozen more: systems
 /// allow 255.
 const LONGEST_NAME: usize = 230;
@@ -149,8 +152,12 @@ const LONGEST_NAME: usize = 230;
 /// Age from which a temporary file is abandoned: far more than writing one takes.
 const ABANDONED: Duration = Duration::from_secs(600);
 
+/// The same of a [`Pending`] file, whose program may hold bytes back for many slow frames.
+const ABANDONED_PENDING: Duration = Duration::from_secs(24 * 3600);
+
 /// Removes what jobs that were killed left while they wrote `files`, all in one folder: temporary
-/// files that nobody has written to for ten minutes, by the folder's own clock.
+/// files that nobody has written to for ten minutes, those of other programs for a day, by the
+/// folder's own clock.
 pub fn remove_abandoned<'a>(files: impl IntoIterator<Item = &'a Path>) {
     let mut files = files.into_iter().peekable();
     let Some(folder) = files.peek().map(|file| folder_of(file).to_owned()) else {
@@ -163,14 +170,16 @@ pub fn remove_abandoned<'a>(files: impl IntoIterator<Item = &'a Path>) {
         return;
     };
     for entry in entries.flatten() {
-        let is_ours = entry
-            .file_name()
-            .to_str()
-            .and_then(destination_name)
-            .is_some_and(|name| names.contains(name));
+        let entry_name = entry.file_name();
+        let temporary = entry_name.to_str().unwrap_or_default();
+        let is_ours = destination_name(temporary).is_some_and(|name| names.contains(name));
+        let least_age = match temporary.ends_with(SUFFIX) {
+            true => ABANDONED,
+            false => ABANDONED_PENDING,
+        };
         let modified = entry.metadata().and_then(|metadata| metadata.modified());
         let age = modified.ok().and_then(|time| now.duration_since(time).ok());
-        if is_ours && age.is_some_and(|age| age > ABANDONED) {
+        if is_ours && age.is_some_and(|age| age > least_age) {
             let _ = fs::remove_file(entry.path());
         }
     }
@@ -291,6 +300,7 @@ mod tests {
             }
         };
         for name in [
+            ".f1.png.a1B2c3.mp4",
             ".f1.png.a1B2c3.tmp",
             ".f2.png.a1B2c3.tmp",
             ".f1.png.claim-0",
@@ -301,6 +311,7 @@ mod tests {
         make(".f1.png.d4E5f6.tmp", false);
         remove_abandoned([folder.path().join("f1.png").as_path()]);
         let left = [
+            ".f1.png.a1B2c3.mp4",
             ".f1.png.claim-0",
             ".f1.png.d4E5f6.tmp",
             ".f2.png.a1B2c3.tmp",

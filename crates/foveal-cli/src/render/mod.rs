@@ -55,6 +55,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     args.video.as_deref().map_or(Ok(()), video::check)?;
     atomic_file::remove_abandoned(jobs.iter().filter_map(|job| job.file.as_deref()));
+    for file in args.video.iter().chain(&args.stats) {
+        atomic_file::remove_abandoned([file.as_path()]);
+    }
     if jobs.is_empty() {
         if !args.quiet {
             if let Some(file) = &args.stats {
