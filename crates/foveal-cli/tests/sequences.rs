@@ -156,6 +156,14 @@ fn finished_frames_are_left_out_and_the_rest_is_whole() {
     assert_eq!(bytes(here, "f1.png"), elsewhere);
     // A still camera before a still scene.
     assert!(bytes(here, "f0.png") == bytes(here, "f2.png"));
+    // One frame alone is missing.
+    fs::remove_file(here.join("f2.png")).unwrap();
+    let share = [&words[..6], &SIZE, &["--share"]].concat();
+    let said = stderr(&succeed(here, &share));
+    assert!(
+        said.contains("wrote f2.png; 2 were there already"),
+        "{said}"
+    );
     let output = succeed(here, &[&words[..], &SIZE, &["--stats", "s.json"]].concat());
     let said = stderr(&output);
     assert!(said.contains("all 3 frames"), "{said}");

@@ -106,7 +106,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         video,
         video_name: args.output_name(),
     };
-    let open = jobs.len();
+    let (there, open) = ((total - jobs.len()) as u64, jobs.len() as u64);
     let turns = if args.frames.share {
         Turns::shared(jobs, args.frames.share_expiry())
     } else {
@@ -125,7 +125,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     if frames.is_empty() {
         if !args.quiet {
-            console::note(&format!("other jobs drew all {open} frames\n"));
+            let rest = summary::not_drawn(there, open);
+            console::note(&format!("no frame was left to this job{rest}\n"));
         }
         return Ok(());
     }
@@ -147,7 +148,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         scene,
         load_ms,
         first_picture_ms,
-        skipped_frames: (total - frames.len()) as u64,
+        skipped_frames: there,
         median: MedianStats::of(&frames),
         frames,
     };
@@ -158,7 +159,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         )?;
     }
     if !args.quiet {
-        console::note(&summary::text(&run));
+        console::note(&summary::text(&run, open - run.frames.len() as u64));
     }
     Ok(())
 }
@@ -335,13 +336,13 @@ fn draw(drawing: &mut Drawing, moment: Moment, frames: u32) -> anyhow::Result<Fr
 fn draw_all(
     drawing: &mut Drawing,
     mut turns: Turns,
-    open: usize,
+    open: u64,
     load_ms: &mut Vec<Timing>,
     written: &mut Written,
     quiet: bool,
 ) -> anyhow::Result<(Vec<NumberedFrameStats>, f64)> {
-    let progress = progress_bar(open as u64, "frames", quiet);
-    let mut frames = Vec::with_capacity(open);
+    let progress = progress_bar(open, "frames", quiet);
+    let mut frames = Vec::new();
     let mut first_picture_ms = 0.0;
     let mut noticed = quiet;
     while let Some((job, claim)) = turns.next()? {

@@ -7,8 +7,9 @@ use foveal::Timing;
 use super::stats::RunStats;
 use foveal_host::console::grouped;
 
-/// What was drawn, with what, how long it took, and where it is.
-pub(super) fn text(run: &RunStats) -> String {
+/// What was drawn, with what, how long it took, and where it is; other jobs drew so many frames
+/// meanwhile.
+pub(super) fn text(run: &RunStats, by_others: u64) -> String {
     let mut text = String::new();
     let counts = &run.scene.counts;
     let _ = writeln!(
@@ -42,10 +43,11 @@ pub(super) fn text(run: &RunStats) -> String {
         grouped(median.triangles as u64),
         grouped(median.shaded_samples as u64),
     );
+    let rest = not_drawn(run.skipped_frames, by_others);
     let [first, .., last] = &run.frames[..] else {
         let _ = match run.frames.first().map(|frame| frame.file.as_str()) {
             Some("-") => writeln!(text, "wrote the picture to standard output"),
-            Some(file) => writeln!(text, "wrote {file}"),
+            Some(file) => writeln!(text, "wrote {file}{rest}"),
             None => writeln!(text, "wrote nothing"),
         };
         return text;
@@ -56,10 +58,19 @@ pub(super) fn text(run: &RunStats) -> String {
     } else {
         write!(text, ", {} to {}", first.file, last.file)
     };
-    if run.skipped_frames > 0 {
-        let _ = write!(text, "; {} were there already", run.skipped_frames);
+    let _ = writeln!(text, "{rest}; figures above are medians");
+    text
+}
+
+/// The frames that this job did not draw.
+pub(super) fn not_drawn(there: u64, by_others: u64) -> String {
+    let mut text = String::new();
+    if there > 0 {
+        let _ = write!(text, "; {there} were there already");
     }
-    let _ = writeln!(text, "; figures above are medians");
+    if by_others > 0 {
+        let _ = write!(text, "; other jobs drew {by_others}");
+    }
     text
 }
 
@@ -84,6 +95,13 @@ fn ms(ms: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn frames_that_were_there_and_those_of_other_jobs_are_told_apart() {
+        assert_eq!(not_drawn(0, 0), "");
+        assert_eq!(not_drawn(2, 0), "; 2 were there already");
+        assert_eq!(not_drawn(2, 3), "; 2 were there already; other jobs drew 3");
+    }
 
     #[test]
     fn numbers_are_readable() {
