@@ -78,8 +78,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.json", conflicts_with = "share")]
     pub(super) stats: Option<PathBuf>,
 
-    /// Number of frames before the first that are drawn, but neither measured nor written: those 1 /
-    /// fps, 2 / fps .. seconds earlier. Nothing is before the moment 0, which stands in for them
+    /// Number of frames before the first that are drawn, but neither measured nor written: those
+    /// 1 / fps, 2 / fps .. seconds earlier. Nothing is before the moment 0, which stands in for them
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(super) warmup: u32,
 

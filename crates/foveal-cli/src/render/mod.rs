@@ -316,9 +316,9 @@ impl Written {
     }
 }
 
-/// Draws the picture that is so many frames before a moment: again where anti-aliasing left surfaces
-/// out in want of room, which it has from then on, so that the picture does not depend on the frames
-/// before.
+/// Draws the picture that is so many frames before a moment: again where anti-aliasing left
+/// surfaces out in want of room, which it has from then on, so that the picture does not depend on
+/// the frames before.
 fn draw(drawing: &mut Drawing, moment: Moment, frames: u32) -> anyhow::Result<FrameStats> {
     let (time_s, previous_time_s) = (moment.before_s(frames), moment.before_s(frames + 1));
     let mut figures = drawing.draw_moment(time_s, previous_time_s)?;

@@ -12,8 +12,8 @@ pub(super) fn is_used(gpu: &Gpu, settings: &Settings) -> bool {
     is_wanted(settings) && !gpu.is_reduced() && fits(&gpu.device.limits(), settings)
 }
 
-/// A sentence where the picture is too large for the light history that these settings ask for; else
-/// empty.
+/// A sentence where the picture is too large for the light history that these settings ask for;
+/// else empty.
 pub(super) fn notice(limits: &wgpu::Limits, settings: &Settings) -> String {
     if !is_wanted(settings) || fits(limits, settings) {
         return String::new();
