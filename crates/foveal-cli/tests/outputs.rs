@@ -11,7 +11,6 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 use std::process::Stdio;
-use std::time::{Duration, SystemTime};
 
 use common::{command, fail, folder, moving_triangle, names, stderr, succeed};
 
@@ -166,7 +165,7 @@ fn a_video_gets_every_frame() {
         "echo \"$@\" > words; for last; do :; done; cat > \"$last\"",
     );
     // Of runs that were killed two days ago.
-    let old = SystemTime::now() - Duration::from_secs(2 * 86_400);
+    let old = std::time::SystemTime::now() - std::time::Duration::from_secs(2 * 86_400);
     for left in [".film.mp4.a1B2c3.mp4", ".s.json.a1B2c3.tmp"] {
         let left = fs::File::create(here.join(left)).unwrap();
         left.set_modified(old).unwrap();

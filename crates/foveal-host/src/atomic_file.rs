@@ -386,6 +386,8 @@ mod tests {
         }
     }
 
+    // Elsewhere whole paths are limited.
+    #[cfg(unix)]
     #[test]
     fn a_name_may_be_as_long_as_the_system_lets_it() {
         let folder = tempfile::tempdir().unwrap();
