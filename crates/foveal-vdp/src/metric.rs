@@ -61,8 +61,8 @@ pub struct VideoComparison {
     pub frames: usize,
     /// The test's change from frame to frame in the periphery, by the reference's: mean absolute
     /// difference of luma (code values) low-passed with σ = 4 pixels, farther from the gaze than
-    /// 0.35 of the height. A reference at rest counts as 10⁻⁹. `None` for a single frame, or
-    /// without a periphery.
+    /// 0.35 of the height. A reference that changes less counts as changing by
+    /// 0.01. `None` for a single frame, or without a periphery.
     pub flicker: Option<f32>,
 }
 
@@ -226,7 +226,7 @@ impl VideoMetric<'_> {
         let per_change = self.flicker[0].samples() * (frames - 1) as f64;
         let flicker = match changes {
             [Some(reference), Some(test)] if frames > 1 => {
-                Some((test / per_change / (reference / per_change).max(1e-9)) as f32)
+                Some((test / per_change / (reference / per_change).max(AT_REST)) as f32)
             }
             _ => None,
         };
@@ -238,6 +238,10 @@ impl VideoMetric<'_> {
         })
     }
 }
+
+/// Mean change, in code values a frame, below which the reference counts as changing by this much: a
+/// ratio to what rests would say nothing.
+const AT_REST: f64 = 0.01;
 
 /// Differences summed over frames.
 #[derive(Clone, Debug)]

@@ -152,6 +152,25 @@ fn a_single_frame_is_a_picture() {
 }
 
 #[test]
+fn beside_a_reference_that_rests_a_change_that_nobody_sees_is_no_flicker() {
+    let (width, height) = (320, 180);
+    let metric = Metric::new(&Display::DEGREES_60, width, height, Gaze::CENTRE).unwrap();
+    let grey = vec![[110u8; 3]; width * height];
+    let mut otherwise = grey.clone();
+    let mut flicker = |changed: usize| {
+        otherwise[..changed].fill([120; 3]);
+        let mut video = metric.video(30.0).unwrap();
+        for frame in [&grey, &otherwise, &grey] {
+            let reference = Pixels::Rgb(&grey);
+            video.push(reference, Pixels::Rgb(frame)).unwrap();
+        }
+        video.finish().unwrap().flicker.unwrap()
+    };
+    assert!(flicker(1) < 0.1);
+    assert!(flicker(100 * width) > 100.0);
+}
+
+#[test]
 fn equal_pictures_are_10_and_the_heat_map_is_cold() {
     let row = &rows()[0];
     let pixels = Pixels::Rgb(&row.reference.frames[0].pixels);
