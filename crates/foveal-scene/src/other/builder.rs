@@ -40,6 +40,11 @@ pub(super) struct Builder {
     texture_of: HashMap<String, usize>,
 }
 
+/// What has no material of its own: no metal, and seen from both sides.
+pub(super) fn plain_surface() -> serde_json::Value {
+    json!({ "pbrMetallicRoughness": { "metallicFactor": 0 }, "doubleSided": true })
+}
+
 impl Builder {
     fn accessor(&mut self, bytes: &[u8], component: u32, kind: &str, count: usize) -> usize {
         let (start, len) = (self.bin.len(), bytes.len());

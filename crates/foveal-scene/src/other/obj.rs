@@ -10,7 +10,7 @@ use std::collections::{HashMap, HashSet};
 
 use serde_json::json;
 
-use super::builder::Builder;
+use super::builder::{Builder, plain_surface};
 use super::{Refusal, check_memory, linear, mtl};
 use crate::error::Limit;
 use crate::gltf::Resolver;
@@ -40,7 +40,8 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = Line<'_>> {
         loop {
             let (index, first) = rest.next()?;
             let mut text = String::from_utf8_lossy(first.trim_ascii());
-            while text.ends_with('\\') {
+            // A comment ends with its line, in a folder's name as well.
+            while !text.starts_with('#') && text.ends_with('\\') {
                 let Some((_, next)) = rest.next() else { break };
                 let joined = text.to_mut();
                 joined.pop();
@@ -113,6 +114,8 @@ struct File {
     libraries: Vec<String>,
     /// Names of materials, in the order of their first use.
     used: Vec<String>,
+    /// Corners of the face that is read.
+    face: Vec<Corner>,
     /// Faces, lines and points.
     shapes: usize,
     dropped: usize,
@@ -144,8 +147,12 @@ pub(super) fn convert(
         );
         notes.push(Warning::new(Code::PrimitiveMode, text));
     }
+    let of_library = |group: &Group| group.material.and_then(|m| materials[m as usize]);
+    let mut plain = None;
     for group in &file.groups {
-        file.add_group(group, &materials, &mut builder, &mut notes);
+        let material = of_library(group)
+            .unwrap_or_else(|| *plain.get_or_insert_with(|| builder.material(&plain_surface())));
+        file.add_group(group, material, &mut builder, &mut notes);
     }
     Ok((builder.glb().map_err(too_large)?, notes))
 }
@@ -257,29 +264,26 @@ impl File {
     fn add_face(&mut self, group: usize, text: &str) -> Result<(), String> {
         self.shapes += 1;
         let counts = self.counts();
-        let group = &mut self.groups[group].triangles;
-        let (mut first, mut last) = (None, None);
-        let mut corners = 0;
-        let before = group.indices.len();
+        self.face.clear();
         for word in text.split_whitespace().take_while(|w| !w.starts_with('#')) {
             let Some(corner) = corner(word, counts)? else {
-                group.indices.truncate(before);
-                self.dropped += 1;
-                return Ok(());
+                self.face.clear();
+                break;
             };
-            corners += 1;
-            let number = group.number(corner);
-            match (first, last) {
-                (None, _) => first = Some(number),
-                (Some(first), Some(last)) => group.indices.extend([first, last, number]),
-                (Some(_), None) => {}
-            }
-            if corners > 1 {
-                last = Some(number);
-            }
+            self.face.push(corner);
         }
-        if corners < 3 {
+        // Corners of a face that is left out would count among those without normals.
+        let [first, second, _, ..] = self.face[..] else {
             self.dropped += 1;
+            return Ok(());
+        };
+        let group = &mut self.groups[group].triangles;
+        let first = group.number(first);
+        let mut last = group.number(second);
+        for &corner in &self.face[2..] {
+            let next = group.number(corner);
+            group.indices.extend([first, last, next]);
+            last = next;
         }
         Ok(())
     }
@@ -394,11 +398,10 @@ impl File {
     fn add_group(
         &self,
         group: &Group,
-        materials: &[Option<usize>],
+        material: usize,
         builder: &mut Builder,
         notes: &mut Vec<Warning>,
     ) {
-        let material = group.material.and_then(|m| materials[m as usize]);
         let mut primitives = Vec::new();
         let kinds = [
             (&group.triangles, TRIANGLES),
@@ -410,13 +413,10 @@ impl File {
                 continue;
             }
             let attributes = self.attributes(&shapes.corners, &group.name, builder, notes);
-            let mut primitive = json!({
-                "attributes": attributes, "indices": builder.indices(&shapes.indices), "mode": mode
-            });
-            if let Some(material) = material {
-                primitive["material"] = json!(material);
-            }
-            primitives.push(primitive);
+            primitives.push(json!({
+                "attributes": attributes, "indices": builder.indices(&shapes.indices), "mode": mode,
+                "material": material
+            }));
         }
         if !primitives.is_empty() {
             builder.object(&group.name, primitives);

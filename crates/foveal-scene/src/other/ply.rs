@@ -6,7 +6,7 @@ use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{Header, Property, PropertyAccess, PropertyAccessResult};
 use serde_json::json;
 
-use super::builder::Builder;
+use super::builder::{Builder, plain_surface};
 use super::obj::{LINES, POINTS, TRIANGLES, too_large};
 use super::{Refusal, check_memory, linear};
 use crate::error::Limit;
@@ -91,8 +91,7 @@ pub(super) fn convert(
             let uv: Vec<[f32; 2]> = vertices.iter().map(|v| v.uv).collect();
             attributes["TEXCOORD_0"] = json!(builder.vectors(&uv));
         }
-        let mut surface =
-            json!({ "pbrMetallicRoughness": { "metallicFactor": 0 }, "doubleSided": true });
+        let mut surface = plain_surface();
         let named = |comment: &String| {
             let file = comment.trim().strip_prefix("TextureFile")?.trim();
             (!file.is_empty()).then(|| file.to_owned())

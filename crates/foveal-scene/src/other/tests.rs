@@ -451,3 +451,34 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_comment_that_ends_in_a_backslash_leaves_the_next_line_alone() {
+    let text = "# from C:\\models\\\nv 0 0 0\nv 1 0 0\nv 0 1 \\\n0\nf 1 2 3\n";
+    let scene = load("a.obj", text.as_bytes(), &[]).unwrap();
+    assert_eq!(scene.triangle_count(), 1);
+    assert_eq!(scene.bounds().max.to_array(), [1.0, 1.0, 0.0]);
+}
+
+#[test]
+fn a_face_that_is_left_out_takes_no_normals_from_the_others() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0.6 0.8\nf 1//1 2//1 3//1\nf 1 2\nf 1 2 99\n";
+    let scene = load("a.obj", text.as_bytes(), &[]).unwrap();
+    assert_eq!(scene.triangle_count(), 1);
+    let vertices = &scene.meshes[0].vertices;
+    assert!(vertices.iter().all(|v| v.normal == [0.0, 0.6, 0.8]));
+    let said: Vec<String> = scene.warnings.iter().map(|w| w.to_string()).collect();
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].contains("2 of 3 faces"), "{said:?}");
+}
+
+#[test]
+fn faces_without_a_library_are_no_metal_and_seen_from_both_sides() {
+    let face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let missing = format!("mtllib none.mtl\nusemtl red\n{face}");
+    for text in [face, &missing] {
+        let scene = load("a.obj", text.as_bytes(), &[]).unwrap();
+        let material = &scene.materials[scene.instances[0].material as usize];
+        assert_eq!((material.metallic, material.double_sided), (0.0, true));
+    }
+}

@@ -187,6 +187,7 @@ fn unit(v: Vec3, fallback: [f32; 3]) -> [f32; 3] {
     v.try_normalize().map_or(fallback, |v| v.to_array())
 }
 
+/// The mean of a vertex's joints by their weights. Joints that do not exist have none.
 fn blend(matrices: &[Mat4], influences: &Influences, vertex: usize) -> Mat4 {
     let (Some(joints), Some(weights)) = (
         influences.joints.get(vertex),
@@ -195,14 +196,22 @@ fn blend(matrices: &[Mat4], influences: &Influences, vertex: usize) -> Mat4 {
         return Mat4::IDENTITY;
     };
     let mut sum = Mat4::ZERO;
-    for (&joint, &weight) in joints.iter().zip(weights) {
-        if weight > 0.0
-            && let Some(matrix) = matrices.get(joint as usize)
-        {
+    let (mut found, mut is_whole) = (0.0, true);
+    for (&joint, &weight) in joints.iter().zip(weights).filter(|(_, w)| **w > 0.0) {
+        if let Some(matrix) = matrices.get(joint as usize) {
             sum += *matrix * weight;
+            found += weight;
+        } else {
+            is_whole = false;
         }
     }
-    sum
+    if is_whole {
+        sum
+    } else if found > 0.0 {
+        sum * (1.0 / found)
+    } else {
+        matrices.first().copied().unwrap_or(Mat4::IDENTITY)
+    }
 }
 
 /// The inverse transpose times the determinant, whose sign normals do not take; safe for singular

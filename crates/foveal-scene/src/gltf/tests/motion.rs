@@ -146,6 +146,33 @@ fn morph_targets_move_vertices_and_flat_normals_follow() {
 }
 
 #[test]
+fn joints_that_do_not_exist_take_no_part_of_a_vertex() {
+    let mut file = File::with_triangle();
+    // Vertex 0 follows joint 0 and none, vertex 1 joint 0, vertex 2 none that exists.
+    let joints = file.accessor(&[0, 9, 0, 0, 0, 0, 0, 0, 9, 8, 0, 0], 5121, "VEC4", 3);
+    file.primitive()["attributes"]["JOINTS_0"] = json!(joints);
+    let weights = [0.5, 0.5, 0., 0., 1., 0., 0., 0., 0.5, 0.5, 0., 0.];
+    file.attribute("WEIGHTS_0", &weights, "VEC4");
+    file.push("nodes", json!({ "translation": [10, 0, 0] }));
+    file.json["scenes"][0]["nodes"] = json!([0, 1]);
+    file.push("skins", json!({ "joints": [1] }));
+    file.node()["skin"] = json!(0);
+    let scene = file.load();
+    let places = scene.meshes[0].vertices.iter().map(|v| v.position[0]);
+    let rest = File::with_triangle().load();
+    let at_rest = rest.meshes[0].vertices.iter().map(|v| v.position[0]);
+    for (place, rest) in places.zip(at_rest) {
+        assert_eq!(place, rest + 10.0);
+    }
+    assert!(
+        scene
+            .warnings
+            .iter()
+            .any(|w| w.to_string().contains("ignored"))
+    );
+}
+
+#[test]
 fn a_skin_follows_its_joints_and_ignores_its_own_node() {
     let mut file = File::with_triangle();
     file.attribute("NORMAL", &[0., 0., 1.].repeat(3), "VEC3");
