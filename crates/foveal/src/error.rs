@@ -50,6 +50,12 @@ pub enum Error {
         /// The texture's name.
         texture: String,
     },
+    /// A pose of another scene than the one that was set.
+    #[error("the pose is of another scene: {difference}; set the scene again")]
+    OtherScene {
+        /// What is otherwise.
+        difference: String,
+    },
     /// A picture that is no environment.
     #[error("the environment cannot be used: {cause}")]
     Environment {

@@ -1,9 +1,10 @@
 //! A renderer that draws only what is seen and shades only as finely as the eye resolves.
 //!
 //! [`Gpu`] opens a device, [`Renderer`] draws a [`foveal_scene::Scene`] through it, [`Settings`]
-//! says how, [`FrameStats`] says what it cost. The library never blocks, never reads a clock and
-//! never touches a file by itself, so that it also runs in a browser: device creation and read-back
-//! are async, and the clock is the caller's.
+//! says how, [`FrameStats`] says what it cost. The library never reads a clock and never
+//! touches a file by itself, so that it also runs in a browser: device creation and read-back are
+//! async, and the clock is the caller's. [`Renderer::render_to`] and [`Renderer::update_pose`] wait for
+//! nothing; setting a scene and reading back wait for the device, in a browser without blocking.
 #![forbid(unsafe_code)]
 
 pub mod gpu;

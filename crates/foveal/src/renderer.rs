@@ -444,7 +444,7 @@ impl Renderer {
             self.stages = stages;
             self.rate_image_is_new = false;
         }
-        self.stages.forget();
+        self.stages.forget_scene();
         self.take_environment(environment);
         Ok(())
     }
@@ -457,8 +457,11 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::OutOfMemory`]. Call it again then: until it succeeds, objects and lights have the
-    /// new pose, and meshes that deform may have the old shape.
+    /// new pose, and meshes that deform may have the old shape. [`Error::OtherScene`] where meshes,
+    /// materials, objects or instances were added, removed or exchanged, and [`Error::Limit`] where
+    /// there are too many lights: nothing of the pose is taken over then.
     pub async fn update_pose(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.scene.check_pose(scene)?;
         self.mend().await?;
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene's pose");
         let change = self.scene.update_pose(&self.gpu, scene);
@@ -487,7 +490,8 @@ impl Renderer {
     /// Draws one frame into the renderer's own picture and waits until it is done.
     ///
     /// # Errors
-    /// [`Error::DeviceLost`], [`Error::OutOfMemory`], [`Error::Validation`].
+    /// [`Error::DeviceLost`], [`Error::OutOfMemory`], [`Error::Validation`]; [`Error::Setting`] where
+    /// the camera makes no sense or cannot be two eyes'.
     pub async fn render(&mut self, frame: &Frame<'_>) -> Result<FrameStats, Error> {
         self.mend().await?;
         self.wake_culler();
@@ -501,7 +505,8 @@ impl Renderer {
         let waited = in_flight.wait(&self.gpu).await;
         let (submitted, counts, frame_ms) = self.torn(waited)?;
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
-        let gpu_ms = self.timer.collect(&self.gpu);
+        // Frames of `render_to` before it may be finished with it.
+        let gpu_ms = self.last_times();
         let stats = self.figures(submitted, &counts, gpu_ms, frame_ms);
         let told = trap.finish().await;
         self.torn(told)?;

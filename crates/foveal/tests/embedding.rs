@@ -230,3 +230,74 @@ fn futures_of_the_renderer_run_on_any_thread() {
     elsewhere(renderer.render(&frame)).expect("drawn");
     assert!(elsewhere(renderer.read_picture()).expect("read") == picture);
 }
+
+#[test]
+fn a_waited_frame_s_times_are_its_own_after_frames_that_were_not_waited_for() {
+    let (device, queue) = host(Gpu::required_limits());
+    let gpu = Gpu::from_device(device.clone(), queue.clone());
+    let [unlit, lit] = [foveal::DebugView::Depth, foveal::DebugView::Final].map(|view| {
+        Settings::default().with(|s| {
+            (s.picture.width, s.picture.height) = (64, 40);
+            s.picture.view = view;
+        })
+    });
+    let scene = generate::cornell();
+    let frame = Frame::new(&scene.cameras[0]);
+    let texture = texture(&device, wgpu::TextureFormat::Rgba8Unorm);
+    let view = texture.create_view(&Default::default());
+    let target = Target {
+        view: &view,
+        format: texture.format(),
+    };
+    let passes = |renderer: &mut Renderer| {
+        let stats = pollster::block_on(renderer.render(&frame)).expect("drawn");
+        stats.gpu_ms.into_iter().map(|t| t.name).collect::<Vec<_>>()
+    };
+    pollster::block_on(async {
+        let new = Renderer::new(&gpu, &lit, RendererOptions::default());
+        let mut renderer = new.await.expect("made");
+        renderer.set_scene(&scene).await.expect("uploaded");
+        let expected = passes(&mut renderer);
+        renderer.set_settings(&unlit).await.expect("made");
+        assert_ne!(passes(&mut renderer), expected);
+        for _ in 0..3 {
+            renderer.render_to(&frame, target).await.expect("drawn");
+        }
+        renderer.set_settings(&lit).await.expect("made");
+        assert_eq!(passes(&mut renderer), expected);
+    });
+}
+
+#[test]
+fn cameras_that_make_no_sense_are_refused() {
+    let (device, queue) = host(Gpu::required_limits());
+    let gpu = Gpu::from_device(device.clone(), queue.clone());
+    let scene = generate::cornell();
+    let camera = |height_m: f32, x: f32| {
+        let mut camera = scene.cameras[0].clone();
+        camera.projection = foveal_scene::Projection::Orthographic {
+            height_m,
+            near_m: 0.0,
+            far_m: 10.0,
+        };
+        camera.world_from_view.w_axis.x = x;
+        camera
+    };
+    let settings = Settings::default().with(|s| (s.picture.width, s.picture.height) = (64, 40));
+    pollster::block_on(async {
+        let new = Renderer::new(&gpu, &settings, RendererOptions::default());
+        let mut renderer = new.await.expect("made");
+        renderer.set_scene(&scene).await.expect("uploaded");
+        let sound = camera(4.0, 0.0);
+        renderer.render(&Frame::new(&sound)).await.expect("drawn");
+        let wrong = [0.0, -1.0, f32::NAN, f32::INFINITY].map(|height_m| camera(height_m, 0.0));
+        for camera in [&wrong[..], &[camera(4.0, f32::NAN)]].concat() {
+            let error = renderer.render(&Frame::new(&camera)).await.unwrap_err();
+            assert!(
+                matches!(error, Error::Setting { name: "camera", .. }),
+                "{error}"
+            );
+        }
+        renderer.render(&Frame::new(&sound)).await.expect("drawn");
+    });
+}

@@ -107,14 +107,7 @@ impl Renderer {
             return Ok(None);
         };
         // Later frames may be finished too: the last one's times are as good.
-        let mut gpu_ms = Vec::new();
-        loop {
-            let passes = self.timer.collect(&self.gpu);
-            if passes.is_empty() {
-                break;
-            }
-            gpu_ms = passes;
-        }
+        let gpu_ms = self.last_times();
         let counts = Counts {
             tiles: counts.tiles.and_then(|arriving| arriving.take()),
             unlit: counts.unlit.and_then(|arriving| arriving.take()),
@@ -124,6 +117,18 @@ impl Renderer {
         };
         let frame_ms = done.take_now().unwrap_or_default();
         Ok(Some(self.figures(stats, &counts, gpu_ms, frame_ms)))
+    }
+
+    /// What the passes of the last finished frame took; empty where none is finished.
+    pub(super) fn last_times(&mut self) -> Vec<Timing> {
+        let mut last = Vec::new();
+        loop {
+            let passes = self.timer.collect(&self.gpu);
+            if passes.is_empty() {
+                return last;
+            }
+            last = passes;
+        }
     }
 
     /// All figures of a frame, from what the CPU knew, the bytes of the counters and the times.

@@ -11,7 +11,8 @@ use crate::{DebugView, Error, SceneStats};
 
 impl Renderer {
     /// The last frame's picture: sRGB RGBA8 rows, top to bottom, `width * height * 4` bytes with
-    /// [`Settings::picture_size`](crate::Settings::picture_size), alpha 255.
+    /// [`Settings::picture_size`](crate::Settings::picture_size), alpha 255. All are 0 until a frame
+    /// has been drawn since the renderer was made or its settings or scene were set.
     ///
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
@@ -71,7 +72,8 @@ impl Renderer {
     }
 
     /// The last frame's picture on the device, as [`Renderer::read_picture`] gives it: sRGB-encoded
-    /// [`wgpu::TextureFormat::Rgba8Unorm`]. It is another one after [`Renderer::set_settings`].
+    /// [`wgpu::TextureFormat::Rgba8Unorm`]. It may be another one after each call
+    /// that sets something, and after one that failed: ask for it frame by frame.
     #[must_use]
     pub fn picture(&self) -> &wgpu::TextureView {
         match &self.upscale {

@@ -62,6 +62,14 @@ impl Stages {
         self.forget_light();
     }
 
+    /// As [`Self::forget`], after another scene, which another backend may suit.
+    pub(super) fn forget_scene(&mut self) {
+        self.forget();
+        if let Some(coarse) = &mut self.coarse {
+            coarse.shading.choose_again();
+        }
+    }
+
     pub(super) async fn new(
         gpu: &Gpu,
         settings: &Settings,

@@ -56,6 +56,13 @@ impl MeshRange {
         }
     }
 
+    /// Whether the mesh has as many vertices and indices as the one that lies here.
+    pub(super) fn holds(&self, mesh: &Mesh) -> bool {
+        let vertices = u64::from(self.first_stroke_vertex) - self.base_vertex as u64;
+        let indices = [self.index_count, self.stroke_index_count].map(u64::from);
+        vertex_counts(mesh)[0] == vertices && index_counts(mesh) == indices
+    }
+
     /// Provoking indices of its triangles.
     pub(crate) fn provoking_indices(&self) -> std::ops::Range<u32> {
         self.first_provoking..self.first_provoking + self.index_count
@@ -361,7 +368,7 @@ impl SceneGeometry {
             return;
         }
         self.keep_vertices(gpu);
-        let mut uploads = Uploads::new(gpu);
+        let mut uploads = Uploads::in_passing(gpu);
         for (mesh, range) in scene.meshes.iter().zip(&self.meshes) {
             if mesh.deforms {
                 write_vertices(&mut uploads, &self.vertices, mesh, *range);

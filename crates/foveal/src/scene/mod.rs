@@ -114,14 +114,7 @@ impl SceneOnGpu {
         material_layout: &wgpu::BindGroupLayout,
         limits: ArrayLimits,
     ) -> Result<Self, Error> {
-        if scene.lights.len() > MAX_LIGHTS {
-            return Err(Error::Limit {
-                what: "the scene's number of lights".to_owned(),
-                value: scene.lights.len() as u64,
-                limit: MAX_LIGHTS as u64,
-                hint: String::new(),
-            });
-        }
+        check_lights(scene)?;
         let exposure_stops = settings.picture.exposure_stops;
         let lights = LightUniform::all(&scene.lights, exposure_stops);
         let mut light_table = Table::new(gpu, "lights");
@@ -166,6 +159,41 @@ impl SceneOnGpu {
             in_motion: false,
             is_shown: false,
         })
+    }
+
+    /// Refuses poses of scenes other than the one that is here.
+    pub(crate) fn check_pose(&self, scene: &Scene) -> Result<(), Error> {
+        check_lights(scene)?;
+        let other = |difference: String| Err(Error::OtherScene { difference });
+        let stats = &self.stats;
+        for (what, found, expected) in [
+            ("meshes", scene.meshes.len(), stats.meshes),
+            ("materials", scene.materials.len(), stats.materials),
+            ("objects", scene.objects.len(), stats.objects),
+            ("instances", scene.instances.len(), stats.instances),
+        ] {
+            if found as u64 != expected {
+                return other(format!("it has {found} {what} in place of {expected}"));
+            }
+        }
+        for (i, (now, before)) in scene.instances.iter().zip(&self.instances).enumerate() {
+            let parts = [
+                ("mesh", now.mesh, before.mesh),
+                ("material", now.material, before.material),
+                ("object", now.object, before.object),
+            ];
+            if let Some((what, found, expected)) = parts.iter().find(|(_, a, b)| a != b) {
+                return other(format!(
+                    "instance {i} has the {what} {found} in place of {expected}"
+                ));
+            }
+        }
+        let ranges = &self.geometry.meshes;
+        let mut deforming = scene.meshes.iter().zip(ranges).filter(|(m, _)| m.deforms);
+        if deforming.any(|(mesh, range)| !range.holds(mesh)) {
+            return other("a mesh has another number of vertices or indices".to_owned());
+        }
+        Ok(())
     }
 
     /// Takes over a new pose of the same scene; the pose so far becomes the previous one.
@@ -291,6 +319,18 @@ fn shadowed_bounds(scene: &Scene, meshes: &[MeshRange]) -> Aabb {
         .filter(|instance| scene.is_visible(instance))
         .filter(|instance| takes_part(&meshes[instance.mesh as usize]))
         .fold(Aabb::EMPTY, |all, instance| all.union(instance.bounds))
+}
+
+fn check_lights(scene: &Scene) -> Result<(), Error> {
+    if scene.lights.len() <= MAX_LIGHTS {
+        return Ok(());
+    }
+    Err(Error::Limit {
+        what: "the scene's number of lights".to_owned(),
+        value: scene.lights.len() as u64,
+        limit: MAX_LIGHTS as u64,
+        hint: String::new(),
+    })
 }
 
 fn drawn_instances(scene: &Scene, materials: &SceneMaterials) -> Vec<DrawnInstance> {

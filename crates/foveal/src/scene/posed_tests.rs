@@ -320,3 +320,38 @@ fn a_pose_changes_no_alpha_modes_and_no_sides() {
     block_on(film.renderer.update_pose(&posed)).expect("it fits");
     assert!(at_rest(&mut film, &camera, &settings) == before);
 }
+
+/// Nothing of them is taken over.
+#[test]
+fn poses_of_other_scenes_are_refused() {
+    let room = foveal_generate::cornell();
+    let camera = room.cameras[0].clone();
+    let settings = settings().with(|s| s.culling.mode = Culling::Occlusion);
+    let mut film = Film::new(&room, &settings);
+    let before = at_rest(&mut film, &camera, &settings);
+    type Change = fn(&mut Scene);
+    let changes: [(Change, &str); 6] = [
+        (|s| s.instances.truncate(s.instances.len() - 1), "instances"),
+        (|s| s.instances.extend_from_within(..1), "instances"),
+        (|s| drop(s.objects.pop()), "objects"),
+        (|s| s.materials.extend_from_within(..1), "materials"),
+        (|s| s.instances[1].material ^= 1, "instance 1"),
+        (
+            |s| {
+                s.meshes[0].deforms = true;
+                let again = s.meshes[0].vertices[0];
+                s.meshes[0].vertices.push(again);
+            },
+            "vertices",
+        ),
+    ];
+    for (change, named) in changes {
+        let mut other = room.clone();
+        other.lights.clear();
+        change(&mut other);
+        let error = block_on(film.renderer.update_pose(&other)).unwrap_err();
+        assert!(matches!(error, crate::Error::OtherScene { .. }), "{error}");
+        assert!(error.to_string().contains(named), "{error}");
+        assert!(at_rest(&mut film, &camera, &settings) == before, "{named}");
+    }
+}

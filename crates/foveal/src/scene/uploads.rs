@@ -11,11 +11,25 @@ const WAITING_BYTES: u64 = 8 << 20;
 pub(super) struct Uploads<'a> {
     gpu: &'a Gpu,
     waiting: u64,
+    may_wait: bool,
 }
 
 impl<'a> Uploads<'a> {
+    /// Uploads that wait for the device. (A page must not: its browser frees what has been read.)
     pub(super) fn new(gpu: &'a Gpu) -> Self {
-        Self { gpu, waiting: 0 }
+        Self {
+            gpu,
+            waiting: 0,
+            may_wait: !cfg!(target_arch = "wasm32"),
+        }
+    }
+
+    /// Uploads between two frames, which wait for nothing.
+    pub(super) fn in_passing(gpu: &'a Gpu) -> Self {
+        Self {
+            may_wait: false,
+            ..Self::new(gpu)
+        }
     }
 
     /// Counts bytes that have been written to the queue, and submits once they are many.
@@ -23,11 +37,10 @@ impl<'a> Uploads<'a> {
         self.waiting += bytes as u64;
         if self.waiting >= WAITING_BYTES {
             self.gpu.queue.submit([]);
-            // A page must not wait; its browser frees what has been read.
-            let poll = if cfg!(target_arch = "wasm32") {
-                wgpu::PollType::Poll
-            } else {
+            let poll = if self.may_wait {
                 wgpu::PollType::wait_indefinitely()
+            } else {
+                wgpu::PollType::Poll
             };
             // What fails is found again by the next frame.
             let _ = self.gpu.poll(poll);

@@ -97,6 +97,10 @@ fn check(settings: &Settings, camera: &Camera) -> Result<(), Error> {
             expected,
         })
     };
+    if !camera.world_from_view.is_finite() {
+        let value = "at a place or turned in a way that is no number".to_owned();
+        return wrong("camera", value, "finite");
+    }
     match camera.projection {
         Projection::Perspective { fov_y_rad, near_m } => {
             let value = format!("a field of view of {fov_y_rad} and a near plane at {near_m} m");
@@ -108,7 +112,15 @@ fn check(settings: &Settings, camera: &Camera) -> Result<(), Error> {
                 return wrong("camera", value, "between 0 and pi radians, and above 0 m");
             }
         }
-        Projection::Orthographic { near_m, far_m, .. } => {
+        Projection::Orthographic {
+            height_m,
+            near_m,
+            far_m,
+        } => {
+            if !(height_m > 0.0 && height_m.is_finite()) {
+                let value = format!("a view of {height_m} m in height");
+                return wrong("camera", value, "above 0 m");
+            }
             if !(near_m < far_m && near_m.is_finite() && far_m.is_finite()) {
                 let value = format!("near plane at {near_m} m, far plane at {far_m} m");
                 return wrong("camera", value, "near before far, both finite");

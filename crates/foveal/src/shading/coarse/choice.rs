@@ -50,6 +50,13 @@ impl BackendChoice {
         }
     }
 
+    /// What was measured belongs to another scene.
+    pub(super) fn start_again(&mut self) {
+        if matches!(self, Self::Measured(..)) {
+            *self = Self::Measuring(Vec::new());
+        }
+    }
+
     /// Whether it stands.
     pub(super) fn is_made(&self) -> bool {
         !matches!(self, Self::Measuring(_))
@@ -104,6 +111,16 @@ impl BackendChoice {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn for_another_scene_what_was_measured_is_measured_again() {
+        let mut choice = BackendChoice::Measured(UsedBackend::Stencil, [20.0, 25.0]);
+        choice.start_again();
+        assert_eq!(choice, BackendChoice::Measuring(Vec::new()));
+        let mut asked = BackendChoice::Fixed(UsedBackend::Stencil, "asked for");
+        asked.start_again();
+        assert!(asked.is_made());
+    }
 
     #[test]
     fn the_faster_backend_is_chosen_whatever_its_compilation_took() {

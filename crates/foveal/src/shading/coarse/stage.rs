@@ -90,6 +90,11 @@ impl CoarseShading {
         }
     }
 
+    /// Has the backend chosen again, where it was chosen by its time.
+    pub(crate) fn choose_again(&mut self) {
+        self.choice.start_again();
+    }
+
     /// Whether the backend is no longer being chosen.
     pub(crate) fn has_chosen(&self) -> bool {
         self.choice.is_made()
