@@ -236,12 +236,8 @@ impl Renderer {
         if *settings == self.settings {
             return Ok(());
         }
-        match self.mend().await {
-            // Where memory is out, the old settings may be what does not fit: the next frame mends
-            // with the new ones.
-            Err(Error::OutOfMemory { .. }) => {}
-            mended => mended?,
-        }
+        // The old settings may be what does not fit: the next frame mends with the new ones.
+        self.mend_as_memory_allows().await?;
         let sizes = |s: &Settings| (s.picture_size(), s.drawn().picture_size());
         let upscale = if sizes(settings) == sizes(&self.settings) {
             None
@@ -402,7 +398,8 @@ impl Renderer {
         textures: Vec<Cow<'_, Texture>>,
         limits: ArrayLimits,
     ) -> Result<(), Error> {
-        self.mend().await?;
+        // The old scene may be what does not fit: the next frame mends with the new one.
+        self.mend_as_memory_allows().await?;
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene");
         let uploaded = SceneOnGpu::new(
             &self.gpu,

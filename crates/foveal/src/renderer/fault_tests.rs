@@ -362,6 +362,29 @@ fn a_pose_that_fails_anywhere_is_an_error_and_objects_and_lights_have_it() {
     }
 }
 
+/// A smaller scene helps where there is no memory to mend with the old one.
+#[test]
+fn another_scene_can_be_set_where_memory_for_mending_is_out() {
+    let gpu = host_gpu();
+    let settings = small(48, 32);
+    let mut renderer = block_on(ready(&gpu, &settings)).expect("nothing fails");
+    for _ in 0..2 {
+        gpu.device.faults.arm(0, Fault::OutOfMemory);
+        block_on(draw(&mut renderer)).expect_err("memory is out");
+        assert!(gpu.device.faults.disarm() && renderer.is_torn);
+    }
+    let other = moved();
+    gpu.device.faults.arm(0, Fault::OutOfMemory);
+    block_on(renderer.set_scene(&other)).expect("another scene");
+    assert!(gpu.device.faults.disarm() && renderer.is_torn);
+    block_on(draw(&mut renderer)).expect("memory is there again");
+    let found = picture(&renderer);
+    let mut fresh = block_on(ready(&gpu, &settings)).expect("nothing fails");
+    block_on(fresh.set_scene(&other)).expect("another scene");
+    block_on(draw(&mut fresh)).expect("drawn");
+    assert!(found == picture(&fresh));
+}
+
 /// Instances beyond the device's limit are noticed before anything of the old scene is gone.
 #[test]
 fn a_scene_beyond_a_limit_costs_the_renderer_nothing() {

@@ -47,6 +47,14 @@ impl Renderer {
         Ok(())
     }
 
+    /// As [`Self::mend`], but where memory is out all stays torn for the next call to mend.
+    pub(super) async fn mend_as_memory_allows(&mut self) -> Result<(), Error> {
+        match self.mend().await {
+            Err(Error::OutOfMemory { .. }) => Ok(()),
+            mended => mended,
+        }
+    }
+
     /// The stages for other settings, and for other bindings where there are any.
     pub(super) async fn new_stages(
         &mut self,
