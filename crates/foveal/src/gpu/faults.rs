@@ -26,6 +26,8 @@ pub enum Fault {
 pub struct Plan {
     /// Creations, uploads and submissions since the last [`Plan::arm`].
     calls: u64,
+    /// Polls since then that waited for the device.
+    waits: u64,
     at: Option<(u64, Fault)>,
     has_struck: bool,
     /// The driver has lost the device.
@@ -56,6 +58,11 @@ impl Faults {
     /// Calls since [`Faults::arm`] or [`Faults::disarm`].
     pub(crate) fn calls(&self) -> u64 {
         self.0.lock().expect("no test panicked").calls
+    }
+
+    /// Polls that waited for the device, since [`Faults::arm`] or [`Faults::disarm`].
+    pub(crate) fn waits(&self) -> u64 {
+        self.0.lock().expect("no test panicked").waits
     }
 
     /// Whether memory has run out since the last question.
@@ -111,7 +118,11 @@ impl Device {
     }
 
     pub(crate) fn poll(&self, how: wgpu::PollType) -> Result<wgpu::PollStatus, wgpu::PollError> {
-        let is_lost = self.faults.0.lock().expect("no test panicked").is_lost;
+        let is_lost = {
+            let mut plan = self.faults.0.lock().expect("no test panicked");
+            plan.waits += u64::from(how.is_wait());
+            plan.is_lost
+        };
         assert!(!is_lost, "Error in Device::poll: the device is lost");
         self.device.poll(how)
     }

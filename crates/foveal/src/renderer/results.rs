@@ -11,8 +11,8 @@ use crate::{DebugView, Error, SceneStats};
 
 impl Renderer {
     /// The last frame's picture: sRGB RGBA8 rows, top to bottom, `width * height * 4` bytes with
-    /// [`Settings::picture_size`](crate::Settings::picture_size), alpha 255. All are 0 until a frame
-    /// has been drawn since the renderer was made or its settings or scene were set.
+    /// [`Settings::picture_size`](crate::Settings::picture_size), alpha 255. Black where no frame
+    /// has been drawn since [`Renderer::picture`] became another one.
     ///
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
@@ -20,12 +20,18 @@ impl Renderer {
         let trap = ErrorTrap::new(&self.gpu, "reading the picture back");
         let reading = start_reading(&self.gpu, self.picture().texture());
         trap.finish().await?;
-        reading.bytes(&self.gpu).await
+        let mut bytes = reading.bytes(&self.gpu).await?;
+        // As a new texture is: no frame has been drawn into it.
+        if bytes.iter().all(|byte| *byte == 0) {
+            bytes.as_chunks_mut().0.fill([0, 0, 0, 255]);
+        }
+        Ok(bytes)
     }
 
     /// The last frame's radiance, at the size at which the frame was drawn
     /// ([`PictureSettings::render_scale`](crate::PictureSettings::render_scale) makes it smaller).
-    /// Two eyes lie side by side, without lenses; eyes that see the same are one picture.
+    /// Two eyes lie side by side, without lenses; eyes that see the same are one picture. Black as
+    /// [`Renderer::read_picture`] is.
     ///
     /// # Errors
     /// [`Error::Setting`] where a debug view was drawn; [`Error::DeviceLost`],
@@ -72,8 +78,9 @@ impl Renderer {
     }
 
     /// The last frame's picture on the device, as [`Renderer::read_picture`] gives it: sRGB-encoded
-    /// [`wgpu::TextureFormat::Rgba8Unorm`]. It may be another one after each call
-    /// that sets something, and after one that failed: ask for it frame by frame.
+    /// [`wgpu::TextureFormat::Rgba8Unorm`]. Ask for it after each frame: other settings, another
+    /// scene, and a call after one that failed may make another one, all zeros until a frame is
+    /// drawn.
     #[must_use]
     pub fn picture(&self) -> &wgpu::TextureView {
         match &self.upscale {

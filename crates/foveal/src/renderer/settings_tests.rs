@@ -34,6 +34,24 @@ fn eyes_that_begin_and_end_to_look_apart_have_their_own_pictures() {
 }
 
 #[test]
+fn pictures_are_opaque_black_before_a_frame() {
+    let ways: [&dyn Fn(&mut Settings); 3] = [&|_| (), &|s| s.picture.render_scale = 0.5, &|s| {
+        s.stereo.mode = Stereo::Instanced;
+        s.stereo.output = Output::SideBySide;
+    }];
+    let scene = generate::cornell();
+    for way in ways {
+        let settings = small(64, 48).with(|s| way(s));
+        let mut renderer = rendered(&scene, &scene.cameras[0], &settings);
+        let resized = settings.with(|s| s.picture.width = 60);
+        block_on(renderer.set_settings(&resized)).expect("they fit");
+        let (width, height) = resized.picture_size();
+        let black = [0, 0, 0, 255].repeat((width * height) as usize);
+        assert!(picture(&renderer) == black);
+    }
+}
+
+#[test]
 fn a_picture_of_rates_that_no_texture_holds_is_refused_and_costs_nothing() {
     let scene = generate::cornell();
     let camera = &scene.cameras[0];

@@ -6,7 +6,7 @@ use foveal_seeds::File;
 use foveal_seeds::pointers::{MOVES, Moved, animate, hold, movable};
 use pollster::block_on;
 
-use crate::testing::{Film, picture, small, texels};
+use crate::testing::{Film, gpu, gpu_with, picture, rendered_on, small, texels};
 use crate::{
     Antialiasing, Culling, Geometry, MaterialDispatch, RateSource, Settings, Shading, Shadows,
 };
@@ -354,4 +354,18 @@ fn poses_of_other_scenes_are_refused() {
         assert!(error.to_string().contains(named), "{error}");
         assert!(at_rest(&mut film, &camera, &settings) == before, "{named}");
     }
+}
+
+#[test]
+fn a_pose_does_not_wait_for_the_device() {
+    let mut scene = foveal_generate::cornell();
+    let mesh = &mut scene.meshes[0];
+    mesh.deforms = true;
+    let more = mesh.vertices[0];
+    mesh.vertices.resize(140_000, more);
+    let gpu = gpu_with(gpu().device.features(), gpu().device.limits());
+    let mut renderer = rendered_on(&gpu, &scene, &scene.cameras[0], &settings());
+    gpu.device.faults.disarm();
+    block_on(renderer.update_pose(&scene)).expect("it fits");
+    assert_eq!(gpu.device.faults.waits(), 0);
 }
