@@ -16,7 +16,7 @@ use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer};
 use crate::lights::LightAssigner;
 use crate::output::{EyesPass, PresentPass, ToneMapPass, Upscale, ViewPass};
 use crate::rate::RateImage;
-use crate::scene::{ArrayLimits, FrameBindings, SceneOnGpu, material_layout};
+use crate::scene::{ArrayLimits, FrameBindings, SceneMaterials, SceneOnGpu, material_layout};
 use crate::shading::{HistoryStage, ShadingPass, VariableStage};
 use crate::shadow::ShadowStage;
 use crate::stereo::{Eye, EyeLayout, LensFit, Submission, Trials};
@@ -398,6 +398,8 @@ impl Renderer {
         textures: Vec<Cow<'_, Texture>>,
         limits: ArrayLimits,
     ) -> Result<(), Error> {
+        FrameBindings::check_instances(&self.gpu, scene.instances.len())?;
+        SceneMaterials::check(&self.gpu, scene.materials.len())?;
         // The old scene may be what does not fit: the next frame mends with the new one.
         self.mend_as_memory_allows().await?;
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene");
@@ -418,7 +420,6 @@ impl Renderer {
         trap.finish().await?;
         let uploaded = uploaded?;
         let uniforms = uploaded.instance_uniforms();
-        FrameBindings::check_instances(&self.gpu, uniforms.len())?;
         // With an environment of its own, or without, it may be drawn by other shaders.
         let settings = resolved(self.settings.drawn(), uploaded.image_light.is_some());
         let stages = if settings == self.stages.settings {

@@ -400,6 +400,15 @@ fn a_scene_beyond_a_limit_costs_the_renderer_nothing() {
     scene.instances.resize(many, one);
     let refused = block_on(renderer.set_scene(&scene));
     assert!(matches!(refused, Err(Error::Limit { .. })), "{refused:?}");
+    let mut scene = self::scene();
+    let one = scene.materials[0].clone();
+    let many = limit as usize / size_of::<crate::scene::MaterialUniform>() + 1;
+    scene.materials.resize(many, one);
+    let refused = block_on(renderer.set_scene(&scene)).unwrap_err();
+    assert!(
+        refused.to_string().contains("number of materials"),
+        "{refused}"
+    );
     assert!(!renderer.is_torn);
     block_on(draw(&mut renderer)).expect("the old scene");
     assert!(picture(&renderer) == old);

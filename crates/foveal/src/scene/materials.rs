@@ -74,6 +74,24 @@ pub(crate) struct SceneMaterials {
 }
 
 impl SceneMaterials {
+    /// Whether the device can bind so many materials.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] where it cannot.
+    pub(crate) fn check(gpu: &Gpu, count: usize) -> Result<(), Error> {
+        let bytes = size_of::<MaterialUniform>() as u64;
+        let limit = gpu.device.limits().max_storage_buffer_binding_size / bytes;
+        if gpu.is_reduced() || count as u64 <= limit {
+            return Ok(());
+        }
+        Err(Error::Limit {
+            what: "the scene's number of materials".to_owned(),
+            value: count as u64,
+            limit,
+            hint: String::new(),
+        })
+    }
+
     /// `textures`: the scene's, whose own may have lost their texels.
     pub(crate) fn new(
         gpu: &Gpu,

@@ -97,9 +97,14 @@ fn check(settings: &Settings, camera: &Camera) -> Result<(), Error> {
             expected,
         })
     };
-    if !camera.world_from_view.is_finite() {
-        let value = "at a place or turned in a way that is no number".to_owned();
-        return wrong("camera", value, "finite");
+    let place = camera.world_from_view;
+    if !(place.is_finite() && place.inverse().is_finite()) {
+        let value = format!("placed by {place}");
+        return wrong(
+            "camera",
+            value,
+            "placed by a finite matrix that has an inverse",
+        );
     }
     match camera.projection {
         Projection::Perspective { fov_y_rad, near_m } => {
