@@ -7,7 +7,7 @@ use super::json::Obj;
 use super::lobes::{self, KeptLobes};
 use super::slots::{SlotDef, parse_slot, texture};
 use crate::error::{Flaw, Parsed};
-use crate::pose::{Factor, MaterialPart, TextureSlot};
+use crate::pose::{Factor, MaterialPart, TextureSlot, emission};
 use crate::{AlphaMode, Code, Material, TextureRef};
 
 /// A material whose texture slots are still numbers of the file.
@@ -45,6 +45,7 @@ impl MaterialDef {
             ..Material::default()
         };
         let emissive_factor = o.floats("emissiveFactor")?.map_or(Vec3::ZERO, Vec3::from);
+        let emissive_factor = emissive_factor.max(Vec3::ZERO);
         let mut emissive_strength = 1.0;
         if let Some(e) = o.extension("KHR_materials_emissive_strength")? {
             let strength = e
@@ -52,7 +53,7 @@ impl MaterialDef {
                 .map_err(|e| e.under("extensions.KHR_materials_emissive_strength"))?;
             emissive_strength = strength.unwrap_or(1.0).max(0.0);
         }
-        material.emissive = emissive_factor * emissive_strength;
+        material.emissive = emission(emissive_factor, emissive_strength);
         let (mut base_color, mut metallic_roughness) = (None, None);
         if let Some(pbr) = o.object("pbrMetallicRoughness")? {
             let within = |e: Flaw| e.under("pbrMetallicRoughness");

@@ -231,9 +231,7 @@ impl MaterialState {
 
     /// The material with all that has been set.
     pub(crate) fn finish(mut self) -> Material {
-        // An infinite one would be NaN where its texture is black.
-        let emissive = self.emissive * self.emissive_strength;
-        self.material.emissive = emissive.min(Vec3::MAX);
+        self.material.emissive = emission(self.emissive, self.emissive_strength);
         for (slot, transform) in &self.transforms {
             if let Some(texture) = slot.of(&mut self.material) {
                 texture.uv_transform = transform.matrix();
@@ -245,6 +243,11 @@ impl MaterialState {
         }
         self.material
     }
+}
+
+/// Emission of its two factors. An infinite one would be NaN where its texture is black.
+pub(crate) fn emission(factor: Vec3, strength: f32) -> Vec3 {
+    (factor * strength).min(Vec3::MAX)
 }
 
 /// Sets a number of a light, or its colour. [`finish_light`] follows the last one.

@@ -15,6 +15,17 @@ fn checker() -> RgbaImage {
 }
 
 #[test]
+fn emission_is_never_negative_or_infinite() {
+    let mut file = File::with_triangle();
+    file.material(json!({
+        "emissiveFactor": [100, 1, -1],
+        "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 1e38 } },
+    }));
+    let emissive = file.load().materials[0].emissive;
+    assert_eq!(emissive, Vec3::new(f32::MAX, 1e38, 0.0));
+}
+
+#[test]
 fn factors_and_modes_are_read() {
     let mut file = File::with_triangle();
     file.material(json!({
