@@ -39,6 +39,7 @@ mod textures;
 mod topology;
 mod unused;
 mod uri;
+mod wanted;
 
 #[cfg(test)]
 mod tests;
@@ -59,7 +60,7 @@ use glam::Mat4;
 use nodes::Hierarchy;
 use parts::Geometry;
 use reader::Reader;
-use textures::Wanted;
+use wanted::Wanted;
 
 use crate::error::{Flaw, FlawKind, Parsed};
 use crate::timings::Stopwatch;

@@ -12,7 +12,7 @@ use super::objects;
 use super::parts::Geometry;
 use super::pictures;
 use super::reader::Reader;
-use super::textures::Wanted;
+use super::wanted::Wanted;
 use crate::error::{Flaw, Limit, Parsed, amount};
 use crate::{Code, LoadOptions, Scene, Warning};
 
