@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde_json::{Value, json};
 
 use super::builder::Builder;
-use super::obj::{Line, lines, name_of};
+use super::lines::{Line, lines, name_of};
 use crate::{Code, Warning};
 
 /// A material as the file has it.

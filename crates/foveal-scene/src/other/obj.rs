@@ -5,19 +5,16 @@
 //! and takes memory without bound for short files.
 //! Lines become lists of two vertices each.
 
-use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 use serde_json::json;
 
 use super::builder::{Builder, plain_surface};
+use super::lines::{Line, lines, name_of};
 use super::{Refusal, check_memory, linear, mtl};
 use crate::error::Limit;
 use crate::gltf::Resolver;
 use crate::{Code, LoadOptions, Warning};
-
-/// Longest name in bytes; longer ones are cut.
-const MAX_NAME: usize = 200;
 
 /// Most material libraries of a file.
 const MAX_LIBRARIES: usize = 64;
@@ -25,45 +22,6 @@ const MAX_LIBRARIES: usize = 64;
 /// What an object, and a material, takes while it is imported, in bytes.
 const OBJECT_BYTES: u64 = 16 << 10;
 const MATERIAL_BYTES: u64 = 8 << 10;
-
-/// A line of text, lines that end in `\` joined with the next.
-pub(super) struct Line<'a> {
-    pub(super) text: Cow<'a, str>,
-    /// From 1 on.
-    number: usize,
-}
-
-/// The lines that are neither empty nor comments, trimmed. Bytes that are not UTF-8 are replaced.
-pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = Line<'_>> {
-    let mut rest = bytes.split(|&b| b == b'\n').enumerate();
-    std::iter::from_fn(move || {
-        loop {
-            let (index, first) = rest.next()?;
-            let mut text = String::from_utf8_lossy(first.trim_ascii());
-            // A comment ends with its line, in a folder's name as well.
-            while !text.starts_with('#') && text.ends_with('\\') {
-                let Some((_, next)) = rest.next() else { break };
-                let joined = text.to_mut();
-                joined.pop();
-                joined.push(' ');
-                joined.push_str(&String::from_utf8_lossy(next.trim_ascii()));
-            }
-            if !text.is_empty() && !text.starts_with('#') {
-                let number = index + 1;
-                return Some(Line { text, number });
-            }
-        }
-    })
-}
-
-/// A name as it is kept.
-pub(super) fn name_of(text: &str) -> String {
-    let mut end = text.len().min(MAX_NAME);
-    while !text.is_char_boundary(end) {
-        end -= 1;
-    }
-    text[..end].to_owned()
-}
 
 /// Numbers of a corner: position, texture coordinates, normal.
 type Corner = (u32, Option<u32>, Option<u32>);

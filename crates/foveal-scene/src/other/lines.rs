@@ -1,0 +1,45 @@
+//! Lines of Wavefront OBJ and MTL files, and the names on them.
+
+use std::borrow::Cow;
+
+/// Longest name in bytes; longer ones are cut.
+const MAX_NAME: usize = 200;
+
+/// A line of text, lines that end in `\` joined with the next.
+pub(super) struct Line<'a> {
+    pub(super) text: Cow<'a, str>,
+    /// From 1 on.
+    pub(super) number: usize,
+}
+
+/// The lines that are neither empty nor comments, trimmed; a comment is not joined with the next.
+/// Bytes that are not UTF-8 are replaced.
+pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = Line<'_>> {
+    let mut rest = bytes.split(|&b| b == b'\n').enumerate();
+    std::iter::from_fn(move || {
+        loop {
+            let (index, first) = rest.next()?;
+            let mut text = String::from_utf8_lossy(first.trim_ascii());
+            while text.ends_with('\\') && !text.starts_with('#') {
+                let Some((_, next)) = rest.next() else { break };
+                let joined = text.to_mut();
+                joined.pop();
+                joined.push(' ');
+                joined.push_str(&String::from_utf8_lossy(next.trim_ascii()));
+            }
+            if !text.is_empty() && !text.starts_with('#') {
+                let number = index + 1;
+                return Some(Line { text, number });
+            }
+        }
+    })
+}
+
+/// A name as it is kept.
+pub(super) fn name_of(text: &str) -> String {
+    let mut end = text.len().min(MAX_NAME);
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    text[..end].to_owned()
+}
