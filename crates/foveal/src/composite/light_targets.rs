@@ -4,7 +4,6 @@ use crate::Settings;
 use crate::formats::LIGHT_FORMAT;
 use crate::gpu::{Gpu, MipChain};
 use crate::shading::SampleList;
-use crate::stereo::EyeLayout;
 
 /// The samples' light, and the pixels without, of one frame size.
 #[derive(Debug)]
@@ -25,8 +24,8 @@ impl LightTargets {
         self.samples.bytes() + buffers.map(wgpu::Buffer::size).iter().sum::<u64>()
     }
 
-    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
-        let size = EyeLayout::of(settings).target_size();
+    /// `size`: of the finest level's samples, in blocks.
+    pub(crate) fn new(gpu: &Gpu, settings: &Settings, size: (u32, u32)) -> Self {
         let buffer = |label, size, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),

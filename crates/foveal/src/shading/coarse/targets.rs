@@ -46,7 +46,8 @@ impl CoarseTargets {
     }
 
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
-        let size = EyeLayout::of(settings).target_size();
+        let history = HistoryTargets::new(gpu, settings);
+        let size = sample_size(settings, history.is_some());
         let levels = 0..=u32::from(settings.coarse.coarsest_level);
         let buffer = |label, bytes: u64, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -77,9 +78,9 @@ impl CoarseTargets {
                 Composite::Smooth => PatchTargets::new(gpu, settings),
                 Composite::Light | Composite::Nearest | Composite::Paper => None,
             },
-            history: HistoryTargets::new(gpu, settings),
             light: (settings.coarse.composite == Composite::Light)
-                .then(|| LightTargets::new(gpu, settings)),
+                .then(|| LightTargets::new(gpu, settings, size)),
+            history,
             stencil: (settings.coarse.backend != CoarseBackend::Compute).then(|| {
                 MipChain::new(
                     gpu,
@@ -106,5 +107,17 @@ impl CoarseTargets {
                 wgpu::BufferUsages::INDIRECT,
             ),
         }
+    }
+}
+
+/// Size of what holds samples block by block. Where light is kept from frame to frame nothing does, and
+/// no more than the smallest that can be bound is there.
+fn sample_size(settings: &Settings, keeps_light: bool) -> (u32, u32) {
+    let (width, height) = EyeLayout::of(settings).target_size();
+    if keeps_light {
+        let block = 1 << settings.coarse.coarsest_level;
+        (width.min(block), height.min(block))
+    } else {
+        (width, height)
     }
 }

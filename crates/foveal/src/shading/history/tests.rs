@@ -107,6 +107,7 @@ fn at_rest_the_picture_becomes_full_shadings_and_nothing_more_is_shaded() {
         kept(),
         kept().with(|s| s.geometry.path = Geometry::Visibility),
         kept().with(|s| s.stereo.mode = Stereo::Instanced),
+        kept().with(|s| s.coarse.coarsest_level = 4),
         kept().with(|s| s.antialiasing.mode = Antialiasing::Msaa),
         kept().with(|s| {
             s.antialiasing.mode = Antialiasing::Msaa;
@@ -138,6 +139,28 @@ fn at_rest_the_picture_becomes_full_shadings_and_nothing_more_is_shaded() {
             assert_eq!(differing(&seen(&film.renderer), &full), 0);
         }
     }
+}
+
+#[test]
+fn samples_by_blocks_take_no_memory_beside_kept_light() {
+    let scene = generate::cornell();
+    let bytes = |history| {
+        let settings = small(1280, 720).with(|s| {
+            s.shading.mode = Shading::Coarse;
+            s.coarse.history = history;
+        });
+        let mut film = Film::new(&scene, &settings);
+        film.draw(&scene.cameras[0]);
+        let targets = film.renderer.targets();
+        let coarse = targets.coarse.as_ref().expect("coarse shading");
+        let kept = coarse.history.as_ref().map_or(0, HistoryTargets::bytes);
+        (coarse.bytes() - kept) as f64 / (1280.0 * 720.0)
+    };
+    let [own, beside] = [false, true].map(bytes);
+    assert!(
+        own > 30.0 && beside < 10.0,
+        "{own} and {beside} bytes a pixel"
+    );
 }
 
 #[test]
