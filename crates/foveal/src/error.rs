@@ -83,3 +83,18 @@ pub enum Error {
         cause: String,
     },
 }
+
+impl Error {
+    /// [`Error::Limit`] where there are more than fit.
+    pub(crate) fn if_above(limit: u64, what: &str, count: usize) -> Result<(), Self> {
+        if count as u64 <= limit {
+            return Ok(());
+        }
+        Err(Self::Limit {
+            what: what.to_owned(),
+            value: count as u64,
+            limit,
+            hint: String::new(),
+        })
+    }
+}

@@ -2,7 +2,8 @@
 
 use std::sync::OnceLock;
 
-use foveal_scene::{Camera, Scene};
+use foveal_scene::{Aabb, Camera, Instance, Material, Mesh, Object, Scene};
+use glam::Mat4;
 
 use crate::gpu::read_texture;
 use crate::{Frame, FrameStats, Gpu, Renderer, Settings};
@@ -138,4 +139,30 @@ pub(crate) fn shifted(camera: &Camera, x: f32) -> Camera {
     let mut camera = camera.clone();
     camera.world_from_view.w_axis.x += x;
     camera
+}
+
+/// A mesh that an object of its own shows.
+pub(crate) fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, world_from_object: Mat4) {
+    mesh.bounds = Aabb::of_points(mesh.vertices.iter().map(|v| v.position.into()));
+    let bounds = mesh.bounds.transformed(world_from_object);
+    let number = scene.instances.len() as u32;
+    scene.objects.push(Object {
+        name: "a mesh".to_owned(),
+        node: number,
+        element: 0,
+        visible: true,
+        occluder: None,
+        set: None,
+        bounds,
+        instances: number..number + 1,
+    });
+    scene.instances.push(Instance {
+        mesh: scene.meshes.len() as u32,
+        material: scene.materials.len() as u32,
+        object: number,
+        world_from_object,
+        bounds,
+    });
+    scene.materials.push(material);
+    scene.meshes.push(mesh);
 }

@@ -24,7 +24,7 @@ impl LightTargets {
         self.samples.bytes() + buffers.map(wgpu::Buffer::size).iter().sum::<u64>()
     }
 
-    /// `size`: of the finest level's samples, in blocks.
+    /// `size`: of what the samples of level 0 cover, in pixels.
     pub(crate) fn new(gpu: &Gpu, settings: &Settings, size: (u32, u32)) -> Self {
         let buffer = |label, size, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {

@@ -4,11 +4,9 @@ use foveal_scene::{AlphaMode, Light, LightKind, Material, Mesh, Scene, Transmiss
 use glam::{Mat4, Vec3, Vec4};
 use pollster::block_on;
 
-use super::strokes_tests::{
-    SIZE, add, black, compare, lines, radiance, scene_of, sized, vertex, white,
-};
+use super::strokes_tests::{SIZE, black, compare, lines, radiance, scene_of, sized, vertex, white};
 use super::twin::{front, quads};
-use crate::testing::{Film, picture, rendered, rendered_on, small};
+use crate::testing::{Film, add, picture, rendered, rendered_on, small};
 use crate::{Antialiasing, Culling, Geometry, Gpu, Settings, Shadows, Stereo};
 
 const SIDE: u32 = 31;

@@ -1,13 +1,12 @@
 //! The CPU twin of points and lines: which pixels they cover, what hides them, how they are lit.
 
 use foveal_scene::{
-    Aabb, AlphaMode, Camera, Environment, Instance, Light, LightKind, Material, Mesh, Object,
-    Projection, Scene, Vertex,
+    AlphaMode, Camera, Environment, Light, LightKind, Material, Mesh, Projection, Scene, Vertex,
 };
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use super::twin::quads;
-use crate::testing::{f32_of_half, picture, rendered, small, texels};
+use crate::testing::{add, f32_of_half, picture, rendered, small, texels};
 use crate::{
     Antialiasing, Geometry, Output, Renderer, SamplePattern, Settings, Shading, Shadows, Stereo,
 };
@@ -46,32 +45,6 @@ pub(crate) fn strokes() -> (Scene, Camera) {
     let mut scene = scene_of(lines(), white());
     add(&mut scene, points(), white(), Mat4::IDENTITY);
     (scene, camera())
-}
-
-/// A mesh that an object of its own shows.
-pub(super) fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, world_from_object: Mat4) {
-    mesh.bounds = Aabb::of_points(mesh.vertices.iter().map(|v| v.position.into()));
-    let bounds = mesh.bounds.transformed(world_from_object);
-    let number = scene.instances.len() as u32;
-    scene.objects.push(Object {
-        name: "strokes".to_owned(),
-        node: number,
-        element: 0,
-        visible: true,
-        occluder: None,
-        set: None,
-        bounds,
-        instances: number..number + 1,
-    });
-    scene.instances.push(Instance {
-        mesh: scene.meshes.len() as u32,
-        material: scene.materials.len() as u32,
-        object: number,
-        world_from_object,
-        bounds,
-    });
-    scene.materials.push(material);
-    scene.meshes.push(mesh);
 }
 
 pub(super) fn scene_of(mesh: Mesh, material: Material) -> Scene {

@@ -109,16 +109,7 @@ impl Table {
         count: usize,
         item_bytes: usize,
     ) -> Result<(), Error> {
-        let limit = Self::limit(gpu);
-        if (count * item_bytes) as u64 <= limit {
-            return Ok(());
-        }
-        Err(Error::Limit {
-            what: what.to_owned(),
-            value: count as u64,
-            limit: limit / item_bytes as u64,
-            hint: String::new(),
-        })
+        Error::if_above(Self::limit(gpu) / item_bytes as u64, what, count)
     }
 }
 

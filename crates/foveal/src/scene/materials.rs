@@ -79,17 +79,12 @@ impl SceneMaterials {
     /// # Errors
     /// [`Error::Limit`] where it cannot.
     pub(crate) fn check(gpu: &Gpu, count: usize) -> Result<(), Error> {
-        let bytes = size_of::<MaterialUniform>() as u64;
-        let limit = gpu.device.limits().max_storage_buffer_binding_size / bytes;
-        if gpu.is_reduced() || count as u64 <= limit {
+        if gpu.is_reduced() {
             return Ok(());
         }
-        Err(Error::Limit {
-            what: "the scene's number of materials".to_owned(),
-            value: count as u64,
-            limit,
-            hint: String::new(),
-        })
+        let bytes = size_of::<MaterialUniform>() as u64;
+        let limit = gpu.device.limits().max_storage_buffer_binding_size / bytes;
+        Error::if_above(limit, "the scene's number of materials", count)
     }
 
     /// `textures`: the scene's, whose own may have lost their texels.

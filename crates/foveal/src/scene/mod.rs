@@ -322,15 +322,8 @@ fn shadowed_bounds(scene: &Scene, meshes: &[MeshRange]) -> Aabb {
 }
 
 fn check_lights(scene: &Scene) -> Result<(), Error> {
-    if scene.lights.len() <= MAX_LIGHTS {
-        return Ok(());
-    }
-    Err(Error::Limit {
-        what: "the scene's number of lights".to_owned(),
-        value: scene.lights.len() as u64,
-        limit: MAX_LIGHTS as u64,
-        hint: String::new(),
-    })
+    let what = "the scene's number of lights";
+    Error::if_above(MAX_LIGHTS as u64, what, scene.lights.len())
 }
 
 fn drawn_instances(scene: &Scene, materials: &SceneMaterials) -> Vec<DrawnInstance> {

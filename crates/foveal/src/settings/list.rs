@@ -173,8 +173,8 @@ settings! {
     /// The number of samples that are shaded.
     "Shading" shading: ShadingSettings {
         /// Number of lighting samples: full takes one per pixel (the reference), coarse one per
-        /// block of pixels, larger away from the gaze, variable one per 1x1 to 2x2 pixels as
-        /// the rate's source allows, which content makes the picture itself.
+        /// block of pixels, larger away from the gaze, variable one per 1x1 to 2x2 pixels.
+        /// With variable, rate content makes samples as fine as the picture's contrast asks for.
         shading => mode: Shading = Shading::default(), "Mode", Kind::choice::<Shading>();
     }
     /// The eye, its display, and the difference that it may see.

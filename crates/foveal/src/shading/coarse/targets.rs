@@ -110,8 +110,8 @@ impl CoarseTargets {
     }
 }
 
-/// Size of what holds samples block by block. Where light is kept from frame to frame nothing does, and
-/// no more than the smallest that can be bound is there.
+/// Size in pixels of what the samples of blocks cover. Where light is kept from frame to frame there
+/// are none, and their targets are as small as can be bound.
 fn sample_size(settings: &Settings, keeps_light: bool) -> (u32, u32) {
     let (width, height) = EyeLayout::of(settings).target_size();
     if keeps_light {

@@ -1,13 +1,13 @@
 //! Rates at steps of depth within one instance, and of a background that the camera turns before.
 
 use foveal_generate as generate;
-use foveal_scene::{Aabb, Camera, Instance, Mesh, Object, Scene, Vertex};
+use foveal_scene::{Camera, Mesh, Scene, Vertex};
 use glam::{Mat4, UVec2, Vec3};
 
 use super::probes::Probe;
 use super::tests::{Film, differing, known_otherwise, reprojected, variable};
 use super::twin;
-use crate::testing::{picture, rendered, small};
+use crate::testing::{add, picture, rendered, small};
 use crate::{Contrast, EnvironmentMap, EnvironmentSource, RateSource, Settings};
 
 const SIZE: (u32, u32) = (64, 48);
@@ -33,6 +33,9 @@ fn wall(low: [f32; 2], high: [f32; 2], z: f32) -> [Vertex; 4] {
 /// from the middle, `across` or down.
 fn walls(edge: f32, across: bool) -> Scene {
     let mut scene = generate::cornell();
+    scene.meshes.clear();
+    scene.objects.clear();
+    scene.instances.clear();
     let half = 3.0 * (0.5 * FOV).tan();
     let near = match across {
         true => [edge * half * SIZE.0 as f32 / SIZE.1 as f32, -10.0],
@@ -42,31 +45,13 @@ fn walls(edge: f32, across: bool) -> Scene {
         wall([-90.0; 2], [90.0; 2], -20.0),
         wall(near, [10.0; 2], -3.0),
     ];
-    let vertices = vertices.concat();
-    let bounds = Aabb::of_points(vertices.iter().map(|v| v.position.into()));
-    scene.meshes = vec![Mesh {
-        vertices,
+    let mesh = Mesh {
+        vertices: vertices.concat(),
         indices: vec![0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7],
-        bounds,
         ..Mesh::default()
-    }];
-    scene.objects = vec![Object {
-        name: "walls".to_owned(),
-        node: 0,
-        element: 0,
-        visible: true,
-        occluder: None,
-        set: None,
-        bounds,
-        instances: 0..1,
-    }];
-    scene.instances = vec![Instance {
-        mesh: 0,
-        material: 0,
-        object: 0,
-        world_from_object: Mat4::IDENTITY,
-        bounds,
-    }];
+    };
+    let material = scene.materials[0].clone();
+    add(&mut scene, mesh, material, Mat4::IDENTITY);
     scene
 }
 

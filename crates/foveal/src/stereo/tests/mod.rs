@@ -6,10 +6,10 @@ mod multiview;
 mod parallax;
 mod present;
 
-use foveal_scene::{Aabb, Camera, Instance, Material, Mesh, Object, Scene, Vertex};
+use foveal_scene::{Camera, Material, Mesh, Scene, Vertex};
 use glam::{Mat4, Vec3};
 
-use crate::testing::{picture, rendered, small};
+use crate::testing::{add, picture, rendered, small};
 use crate::{EyeClipping, Output, Settings, Stereo};
 
 /// The ways in which two eyes' geometry can be submitted.
@@ -49,38 +49,17 @@ fn shape(corners: &[Vec3]) -> Scene {
         color: [u16::MAX; 4],
         ..bytemuck::Zeroable::zeroed()
     };
-    let bounds = corners
-        .iter()
-        .fold(Aabb::EMPTY, |b, &p| b.union(Aabb { min: p, max: p }));
     let last = corners.len() as u32 - 1;
-    Scene {
-        meshes: vec![Mesh {
-            vertices: corners.iter().map(vertex).collect(),
-            indices: (1..last).flat_map(|i| [0, i, i + 1]).collect(),
-            bounds,
-            ..Mesh::default()
-        }],
-        materials: vec![Material {
-            unlit: true,
-            ..Material::default()
-        }],
-        objects: vec![Object {
-            name: "shape".to_owned(),
-            node: 0,
-            element: 0,
-            visible: true,
-            occluder: None,
-            set: None,
-            bounds,
-            instances: 0..1,
-        }],
-        instances: vec![Instance {
-            mesh: 0,
-            material: 0,
-            object: 0,
-            world_from_object: Mat4::IDENTITY,
-            bounds,
-        }],
-        ..Scene::default()
-    }
+    let mesh = Mesh {
+        vertices: corners.iter().map(vertex).collect(),
+        indices: (1..last).flat_map(|i| [0, i, i + 1]).collect(),
+        ..Mesh::default()
+    };
+    let white = Material {
+        unlit: true,
+        ..Material::default()
+    };
+    let mut scene = Scene::default();
+    add(&mut scene, mesh, white, Mat4::IDENTITY);
+    scene
 }
