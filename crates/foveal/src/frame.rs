@@ -70,7 +70,7 @@ pub(crate) struct FrameUniform {
     pub(crate) shadow_bias: f32,
     pub(crate) light_radius: f32,
     pub(crate) sun_tangent: f32,
-    pub(crate) reserved: f32,
+    pub(crate) resting_views: u32,
 }
 
 impl FrameUniform {
@@ -84,7 +84,8 @@ impl FrameUniform {
     ) -> Self {
         let layout = EyeLayout::of(settings);
         let (target_width, target_height) = layout.target_size();
-        let view = |i: usize| ViewUniform::new(&eyes[i], &previous[i], clusters.shifts[i]);
+        let views = [0, 1].map(|i| ViewUniform::new(&eyes[i], &previous[i], clusters.shifts[i]));
+        let rests = views.map(|v| u32::from(v.clip_from_world == v.previous_clip_from_world));
         let EnvironmentTerms { sky, map } = environment;
         let intensity = settings.lighting.environment_intensity;
         let shadows = LookupSettings::new(&settings.lighting);
@@ -95,7 +96,7 @@ impl FrameUniform {
             Projection::Orthographic { near_m, far_m, .. } => (1, near_m, far_m - near_m),
         };
         Self {
-            views: [view(0), view(1)],
+            views,
             zenith: (intensity * sky.zenith).to_array(),
             near,
             horizon: (intensity * sky.horizon).to_array(),
@@ -126,7 +127,7 @@ impl FrameUniform {
             shadow_bias: shadows.texels_moved,
             light_radius: shadows.light_radius_m,
             sun_tangent: shadows.sun_tangent,
-            reserved: 0.0,
+            resting_views: rests[0] | rests[1] << 1,
         }
     }
 }

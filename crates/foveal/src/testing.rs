@@ -16,6 +16,13 @@ pub(crate) fn gpu() -> &'static Gpu {
     })
 }
 
+/// Whether the tests' device rounds alike wherever the same is computed. Hardware does not: its
+/// compilers join multiplications and additions as they see fit, and its rasterizers interpolate
+/// from the target's corner.
+pub(crate) fn rounds_alike() -> bool {
+    gpu().is_lavapipe()
+}
+
 /// A device of one's own on the tests' adapter.
 pub(crate) fn gpu_with(features: wgpu::Features, limits: wgpu::Limits) -> Gpu {
     pollster::block_on(async {

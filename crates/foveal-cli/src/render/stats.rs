@@ -100,7 +100,8 @@ impl MedianStats {
     }
 }
 
-/// The median of each stage over the frames that have it, in the order of their first appearance.
+/// The median of each stage over all frames, in the order of their first appearance. A frame without
+/// a stage counts as 0.
 fn medians(frames: &[NumberedFrameStats], timings: fn(&FrameStats) -> &[Timing]) -> Vec<Timing> {
     let mut stages: Vec<(&str, Vec<f64>)> = Vec::new();
     for timing in frames.iter().flat_map(|frame| timings(&frame.figures)) {
@@ -111,9 +112,12 @@ fn medians(frames: &[NumberedFrameStats], timings: fn(&FrameStats) -> &[Timing])
     }
     stages
         .into_iter()
-        .map(|(name, ms)| Timing {
-            name: name.to_owned(),
-            ms: median(&ms),
+        .map(|(name, mut ms)| {
+            ms.resize(frames.len(), 0.0);
+            Timing {
+                name: name.to_owned(),
+                ms: median(&ms),
+            }
         })
         .collect()
 }
@@ -145,7 +149,10 @@ mod tests {
     #[test]
     fn medians_are_taken_figure_by_figure() {
         let frames = [
-            frame(9.0, &[("geometry", 1.0), ("lighting", 5.0)]),
+            frame(
+                9.0,
+                &[("geometry", 1.0), ("lighting", 5.0), ("shadows", 9.0)],
+            ),
             frame(2.0, &[("geometry", 3.0)]),
             frame(4.0, &[("geometry", 2.0), ("lighting", 7.0)]),
         ];
@@ -156,7 +163,10 @@ mod tests {
             .iter()
             .map(|t| (t.name.as_str(), t.ms))
             .collect();
-        assert_eq!(gpu, [("geometry", 2.0), ("lighting", 6.0)]);
+        assert_eq!(
+            gpu,
+            [("geometry", 2.0), ("lighting", 5.0), ("shadows", 0.0)]
+        );
         assert_eq!(MedianStats::of(&[]), MedianStats::default());
     }
 }

@@ -74,9 +74,11 @@ pub(super) fn not_drawn(there: u64, by_others: u64) -> String {
     text
 }
 
+/// Stages that most frames have.
 fn stages(timings: &[Timing]) -> String {
     let stages: Vec<String> = timings
         .iter()
+        .filter(|t| t.ms > 0.0)
         .map(|t| format!("{} {}", t.name.replace('_', " "), ms(t.ms)))
         .collect();
     stages.join(", ")

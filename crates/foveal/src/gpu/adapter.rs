@@ -1,5 +1,8 @@
 //! Which graphics adapter.
 
+#[cfg(not(target_family = "wasm"))]
+use std::sync::{Mutex, PoisonError};
+
 use crate::{AdapterStats, Error};
 
 /// All adapters that the environment allows, best first.
@@ -21,12 +24,37 @@ async fn preferred() -> Vec<wgpu::Adapter> {
     }
 }
 
-async fn of(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+/// The graphics interfaces `backends`, loaded.
+#[cfg(target_family = "wasm")]
+fn instance(backends: wgpu::Backends) -> wgpu::Instance {
+    new_instance(backends)
+}
+
+/// The graphics interfaces `backends`, loaded once and kept until the process ends. With the last
+/// instance that is dropped the driver's library is unloaded, and what the driver has arranged for a
+/// thread's end is then missing: a thread that has used NVIDIA's (580.159) and ends later crashes.
+#[cfg(not(target_family = "wasm"))]
+fn instance(backends: wgpu::Backends) -> wgpu::Instance {
+    static KEPT: Mutex<Vec<(wgpu::Backends, wgpu::Instance)>> = Mutex::new(Vec::new());
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, instance)) = kept.iter().find(|(of, _)| *of == backends) {
+        return instance.clone();
+    }
+    let instance = new_instance(backends);
+    kept.push((backends, instance.clone()));
+    instance
+}
+
+fn new_instance(backends: wgpu::Backends) -> wgpu::Instance {
+    wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends,
         flags: wgpu::InstanceFlags::from_env_or_default(),
         ..wgpu::InstanceDescriptor::new_without_display_handle()
-    });
+    })
+}
+
+async fn of(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
+    let instance = instance(backends);
     let mut adapters = instance.enumerate_adapters(backends).await;
     // A stable sort: the driver's order holds among equals.
     adapters.sort_by_key(|a| rank(&a.get_info()));

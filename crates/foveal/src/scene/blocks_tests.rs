@@ -10,7 +10,7 @@ use glam::{Mat3, Vec2, Vec3, Vec4};
 use super::ArrayLimits;
 use crate::forward::twin::{front, quads};
 use crate::shading::twin::{position_at, unpack_surface};
-use crate::testing::{gpu, picture, rendered, small, texels};
+use crate::testing::{gpu, picture, rendered, rounds_alike, small, texels};
 use crate::{Frame, Geometry, MaterialDispatch, Renderer, RendererOptions, Settings};
 
 /// A texture of 8 x 8 texels without filtering, in blocks as `read` says.
@@ -151,9 +151,17 @@ fn assert_equals_twin(scene: &Scene) {
                 let base = Vec3::new(of(&color, 0), of(&color, 1), of(&color, 2));
                 let off = (surface.base_color - base).abs().max_element();
                 assert!(off < 0.01, "{way} {blocks}: {off}");
-                assert!((surface.roughness - of(&rough, 1)).abs() < 0.006);
-                assert!((surface.metallic - of(&rough, 2)).abs() < 0.006);
-                assert!((surface.occlusion - of(&open, 0)).abs() < 0.006);
+                let off = [
+                    surface.roughness - of(&rough, 1),
+                    surface.metallic - of(&rough, 2),
+                    surface.occlusion - of(&open, 0),
+                ];
+                // Between a block's two colours hardware may round by a code value more.
+                let most = if rounds_alike() { 0.006 } else { 0.01 };
+                assert!(
+                    off.iter().all(|off| off.abs() < most),
+                    "{way} {blocks}: {off:?}"
+                );
                 compared += 1;
             }
             assert!(compared > 300, "{compared}");

@@ -66,7 +66,8 @@ struct Frame {
     light_radius: f32,
     // Tangent of half the angle that directional lights fill.
     sun_tangent: f32,
-    reserved: f32,
+    // A bit for each view whose matrix is that of the frame before.
+    resting_views: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -101,6 +101,21 @@ fn previous_instance_position(i: Instance, position: vec3f) -> vec3f {
     return vec3f(dot(i.previous_x, p), dot(i.previous_y, p), dot(i.previous_z, p));
 }
 
+// Whether nothing has moved since the frame before. Positions then and now do not tell: they are
+// computed by different instructions, which may round differently.
+fn is_at_rest(i: Instance, view: u32, position: vec3f, previous_position: vec3f) -> bool {
+    let view_rests = ((frame.resting_views >> view) & 1u) != 0u;
+    let instance_rests = all(i.world_x == i.previous_x) & all(i.world_y == i.previous_y) & all(i.world_z == i.previous_z);
+    return view_rests & instance_rests & all(position == previous_position);
+}
+
+// x, y, w of an eye's own clip space in the frame before; `now` where nothing has moved.
+fn clip_before(i: Instance, view: u32, now: vec3f, position: vec3f, previous_position: vec3f) -> vec3f {
+    let previous = previous_instance_position(i, previous_position);
+    let before = frame.views[view].previous_clip_from_world * vec4f(previous, 1.0);
+    return select(before.xyw, now, is_at_rest(i, view, position, previous_position));
+}
+
 // 1, or -1 where the instance's transform turns the winding around.
 fn handedness_of(i: Instance) -> f32 {
     return select(-1.0, 1.0, dot(i.world_x.xyz, cross(i.world_y.xyz, i.world_z.xyz)) >= 0.0);
@@ -134,7 +149,6 @@ fn vertex_of(in: VertexIn, d: Drawn) -> VertexOut {
 #else
     let world = world_vertex(i, in.position, in.normal, in.tangent);
 #endif
-    let previous = previous_instance_position(i, in.previous_position);
 
     var out: VertexOut;
 #ifdef STROKES
@@ -161,13 +175,14 @@ fn vertex_of(in: VertexIn, d: Drawn) -> VertexOut {
     out.uv = in.uv;
     out.color = in.color;
     out.instance = d.instance | (d.view << 31u);
-    out.before = (frame.views[d.view].previous_clip_from_world * vec4f(previous, 1.0)).xyw;
+    out.before = clip_before(i, d.view, out.now, in.position, in.previous_position);
     return out;
 }
 
-// Motion since the frame before, for x, y, w of clip space then and now.
+// Motion since the frame before, for x, y, w of clip space then and now. Zero where they are equal:
+// the difference of two equal quotients need not be, where one of them is rounded later.
 fn motion_in_pixels(now: vec3f, before: vec3f) -> vec2f {
-    let moved = now.xy / now.z - before.xy / before.z;
+    let moved = select(now.xy / now.z - before.xy / before.z, vec2f(0.0), all(now == before));
     return clamp(moved * vec2f(0.5, -0.5) * frame.size, vec2f(-60000.0), vec2f(60000.0));
 }
 

@@ -31,8 +31,7 @@ struct VisibleOut {
 fn visible_vertex(d: Drawn, position: vec3f, previous_position: vec3f, uv: vec4f, alpha: f32) -> VisibleVertex {
     let i = instance_at(d.instance);
     let clip = frame.views[d.view].clip_from_world * vec4f(instance_position(i, position), 1.0);
-    let previous = previous_instance_position(i, previous_position);
-    let before = (frame.views[d.view].previous_clip_from_world * vec4f(previous, 1.0)).xyw;
+    let before = clip_before(i, d.view, clip.xyw, position, previous_position);
     let marked = d.instance | (d.view << 31u);
     return VisibleVertex(in_target(clip, d.view), uv, alpha, marked, clip.xyw, before, 0u);
 }

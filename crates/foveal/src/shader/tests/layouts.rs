@@ -73,7 +73,7 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             shadow_bias,
             light_radius,
             sun_tangent,
-            reserved,
+            resting_views,
         ]
     );
     assert_same_layout!(

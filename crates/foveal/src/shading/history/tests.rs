@@ -10,7 +10,7 @@ use super::targets::HistoryTargets;
 use super::twin::{Before, Fate, Seen};
 use crate::gpu::read_level;
 use crate::stereo::EyeLayout;
-use crate::testing::{Film, f32_of_half, gpu, rendered, shifted, small, texels};
+use crate::testing::{Film, f32_of_half, gpu, rendered, rounds_alike, shifted, small, texels};
 use crate::{Antialiasing, FrameStats, Geometry, RateSource, Renderer, Settings, Shading, Stereo};
 
 const SIZE: (u32, u32) = (157, 101);
@@ -132,11 +132,16 @@ fn at_rest_the_picture_becomes_full_shadings_and_nothing_more_is_shaded() {
             antialiasing,
             ..
         } = &settings;
+        // Full shading is another shader, whose last bits may differ.
+        let most = if rounds_alike() { 0 } else { 10 };
         let off = differing(&seen(&film.renderer), &full);
-        assert_eq!(off, 0, "{geometry:?} {stereo:?} {antialiasing:?}");
+        assert!(
+            off <= most,
+            "{geometry:?} {stereo:?} {antialiasing:?}: {off}"
+        );
         for _ in 0..2 {
             assert_eq!(shaded(&film.draw(&there)), 0.0);
-            assert_eq!(differing(&seen(&film.renderer), &full), 0);
+            assert_eq!(differing(&seen(&film.renderer), &full), off);
         }
     }
 }

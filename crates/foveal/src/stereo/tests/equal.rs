@@ -5,7 +5,7 @@ use foveal_scene::{Camera, Scene};
 use glam::Vec3;
 
 use super::{WAYS, halves, two_eyes};
-use crate::testing::{gpu, picture, rendered, small, texels};
+use crate::testing::{gpu, picture, rendered, rounds_alike, small, texels};
 use crate::{
     Antialiasing, CoarseBackend, Composite, Culling, DebugView, EyeClipping, LightAssignment,
     SamplePattern, Settings, Shading, Stereo,
@@ -110,13 +110,13 @@ fn two_eyes_in_one_place_see_what_one_eye_sees() {
                     );
                     // Rasterizers interpolate from the target's corner, which lies elsewhere;
                     // averages of sub-samples are rounded besides.
-                    let rounded = if mono.antialiasing.mode == Antialiasing::None {
-                        2
-                    } else {
-                        10
+                    let rounded = match mono.antialiasing.mode {
+                        _ if !rounds_alike() => one.len() / 50,
+                        Antialiasing::None => 2,
+                        _ => 10,
                     };
                     assert!(
-                        differing <= rounded && by <= 1,
+                        differing <= rounded && (by <= 1 || !rounds_alike() && by <= 4),
                         "{what}: {differing} pixels by {by}"
                     );
                 }
@@ -212,20 +212,32 @@ fn instancing_equals_two_passes_to_the_bit_on_every_generated_scene() {
                 EyeClipping::Clip => &with_plane,
                 _ => &plain,
             };
-            assert!(
-                *expected == halves(&scene, &camera, &settings),
-                "{}, {eye_clipping:?}",
-                scene.name
-            );
+            for (expected, seen) in expected.iter().zip(&halves(&scene, &camera, &settings)) {
+                let off = difference(expected, seen);
+                let is_near = !rounds_alike() && off.0 <= seen.len() / 50 && off.1 <= 4;
+                assert!(
+                    off == (0, 0) || is_near,
+                    "{}, {stereo:?}, {eye_clipping:?}: {off:?}",
+                    scene.name
+                );
+            }
         }
         // A clipped triangle is another polygon: its last bits differ (0.05 % of the pixels by 1 or
         // 2 in the demo scene, whose ground reaches beyond both borders; elsewhere a pixel or
         // none).
         for (eye, (plain, clipped)) in plain.iter().zip(&with_plane).enumerate() {
             let (differing, by) = difference(plain, clipped);
+            let is_far = |(a, b): &(&[u8; 4], &[u8; 4])| (0..3).any(|c| a[c].abs_diff(b[c]) > 4);
+            let far = plain.iter().zip(clipped).filter(is_far).count();
+            let is_near = if rounds_alike() {
+                differing <= plain.len() / 1000 && by <= 2
+            } else {
+                // Borders of a clipped polygon are other lines, too, by fractions of a pixel.
+                differing <= plain.len() / 50 && far <= plain.len() / 1000
+            };
             assert!(
-                differing <= plain.len() / 1000 && by <= 2,
-                "{}, eye {eye}: {differing} pixels by {by}",
+                is_near,
+                "{}, eye {eye}: {differing} pixels by {by}, {far} of them far",
                 scene.name
             );
         }
@@ -359,7 +371,9 @@ fn each_eye_has_its_own_gaze() {
     for (seen, gaze) in seen.iter().zip([[0.2, 0.6], [0.8, 0.3]]) {
         let one: Vec<[u8; 4]> =
             bytemuck::pod_collect_to_vec(&picture(&rendered(&scene, camera, &mono(gaze))));
-        assert_eq!(difference(seen, &one), (0, 0));
+        let off = difference(seen, &one);
+        let is_near = !rounds_alike() && off.0 <= one.len() / 1000 && off.1 <= 1;
+        assert!(off == (0, 0) || is_near, "{off:?}");
     }
     assert!(difference(&seen[0], &seen[1]).0 > 1000);
 }
