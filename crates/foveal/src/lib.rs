@@ -57,9 +57,10 @@ pub use settings::{
     CoarseBackend, CoarseSample, CoarseSettings, Composite, Contrast, Culling, CullingEyes,
     CullingSettings, DebugView, Display, EdgeTest, EnvironmentSource, EyeClipping, EyeFrusta,
     EyeSettings, Geometry, GeometrySettings, Kind, Lens, LensProfile, LightAssignment,
-    LightingModel, LightingSettings, MaterialDispatch, Output, PictureSettings, RateCombine,
-    RateSettings, RateSource, RateStage, RefineEdges, SamplePattern, Setting, Settings, Shading,
-    ShadingSettings, ShadowSizes, Shadows, Stereo, StereoSettings, ToneMap, VariableSettings,
+    LightingModel, LightingPass, LightingSettings, MaterialDispatch, Output, PictureSettings,
+    RateCombine, RateSettings, RateSource, RateStage, RefineEdges, SamplePattern, Setting,
+    Settings, Shading, ShadingSettings, ShadowSizes, Shadows, Stereo, StereoSettings, ToneMap,
+    VariableSettings,
 };
 
 pub use stereo::ShownEyes;

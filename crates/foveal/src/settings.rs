@@ -12,8 +12,8 @@ mod variable;
 
 pub use choices::{
     AmbientOcclusion, Antialiasing, Background, Culling, CullingEyes, DebugView, EdgeTest,
-    EnvironmentSource, LightAssignment, LightingModel, MaterialDispatch, SamplePattern,
-    ShadowSizes, Shadows, ToneMap,
+    EnvironmentSource, LightAssignment, LightingModel, LightingPass, MaterialDispatch,
+    SamplePattern, ShadowSizes, Shadows, ToneMap,
 };
 
 pub use coarse::{

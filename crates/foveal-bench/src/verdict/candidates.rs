@@ -47,6 +47,17 @@ const ALL: &[Candidate] = &[
         "geometry",
         &[("geometry", "visibility")],
     ),
+    // Of these two one is what the plain picture has.
+    faster(
+        "Lighting by fragments",
+        "lighting pass",
+        &[("lighting-pass", "fragment")],
+    ),
+    faster(
+        "Lighting by compute",
+        "lighting pass",
+        &[("lighting-pass", "compute")],
+    ),
     faster(
         "Variable shading by content",
         "shading",

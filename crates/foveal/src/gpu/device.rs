@@ -240,6 +240,11 @@ impl Gpu {
         driver.starts_with("llvmpipe") || name.starts_with("llvmpipe")
     }
 
+    /// Whether the device is a graphics card of its own.
+    pub(crate) fn is_discrete(&self) -> bool {
+        self.device.adapter_info().device_type == wgpu::DeviceType::DiscreteGpu
+    }
+
     /// Whether tables are textures (`gpu/table.rs`).
     pub(crate) fn has_texture_tables(&self) -> bool {
         let most = self.device.limits().max_sampled_textures_per_shader_stage;

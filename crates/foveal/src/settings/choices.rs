@@ -290,6 +290,24 @@ pub enum LightAssignment {
     Brute,
 }
 
+/// Kind of the passes that light every pixel, or reproject its kept light. The picture is the same
+/// but for rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+pub enum LightingPass {
+    /// `Compute` on graphics cards of their own, `Fragment` elsewhere.
+    #[default]
+    Auto,
+    /// The fragments of a draw.
+    Fragment,
+    /// A compute shader.
+    Compute,
+}
+
 /// Curve from scene radiance to display values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(

@@ -1,13 +1,15 @@
 //! The shading pass.
 
+use super::every_pixel::{EveryPixel, Recipe};
 use super::{SampleList, Samples};
 use crate::environment::environment_constants;
 use crate::formats::RADIANCE_FORMAT;
 use crate::geometry::GBuffer;
-use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read};
-
+use crate::gpu::{
+    Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, written,
+};
 use crate::lights::SceneLights;
-use crate::recorder::{Recorder, overwritten};
+use crate::recorder::Recorder;
 use crate::{LightAssignment, LightingModel, Settings, shader};
 
 /// Settings that change the lighting shaders. The reduced ones have no shadows.
@@ -40,7 +42,7 @@ fn model_constants(settings: &Settings) -> [(&'static str, f64); 2] {
 /// Lights samples of the G-buffer.
 #[derive(Debug)]
 pub(crate) struct ShadingPass {
-    every_pixel: wgpu::RenderPipeline,
+    every_pixel: EveryPixel,
     /// Where the device has compute shaders.
     list: Option<wgpu::ComputePipeline>,
     input_layout: wgpu::BindGroupLayout,
@@ -66,35 +68,33 @@ impl ShadingPass {
             wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
             &types,
         );
-        let listed = [
-            storage_read(),
-            storage_read(),
-            wgpu::BindingType::StorageTexture {
-                access: wgpu::StorageTextureAccess::WriteOnly,
-                format: RADIANCE_FORMAT,
-                view_dimension: wgpu::TextureViewDimension::D2,
-            },
-        ];
+        let listed = [storage_read(), storage_read(), written(RADIANCE_FORMAT)];
         let list_layout = bind_group_layout(
             gpu,
             "sample list",
             wgpu::ShaderStages::COMPUTE,
             if gpu.is_reduced() { &[] } else { &listed },
         );
-        let every_pixel_shader = if gpu.is_reduced() {
+        let constants = lighting_constants(gpu, settings);
+        let drawn = if gpu.is_reduced() {
             shader::SHADING_EVERY_PIXEL.variant(&["REDUCED"])
         } else {
             shader::SHADING_EVERY_PIXEL
         };
-        let constants = lighting_constants(gpu, settings);
-        let every_pixel = shader::full_screen(
+        let every_pixel = EveryPixel::new(
             gpu,
-            "shading",
-            &shader::module(gpu, "shading, every pixel", every_pixel_shader),
-            "shade_pixel",
-            &[frame_layout, &input_layout],
-            RADIANCE_FORMAT,
-            &constants,
+            settings,
+            &Recipe {
+                label: "shading, every pixel",
+                drawn: (drawn, "shade_pixel"),
+                dispatched: (
+                    shader::SHADING_EVERY_PIXEL.variant(&["DISPATCHED"]),
+                    "shade_all",
+                ),
+                groups: &[frame_layout, &input_layout],
+                targets: &[RADIANCE_FORMAT],
+                constants: &constants,
+            },
         );
         let list = (!gpu.is_reduced()).then(|| {
             shader::compute(
@@ -170,11 +170,7 @@ impl ShadingPass {
         target: &wgpu::TextureView,
         label: &str,
     ) {
-        // Every texel is written.
-        let mut pass = recorder.render_pass(label, &[overwritten(target)], None);
-        pass.set_pipeline(&self.every_pixel);
-        pass.set_bind_group(1, input, &[]);
-        pass.draw(0..3, 0..1);
+        self.every_pixel.run(recorder, label, &[input], &[target]);
     }
 
     fn list_group(

@@ -3,7 +3,8 @@
 
 use crate::Error;
 use crate::settings::{
-    AmbientOcclusion, Antialiasing, DebugView, Geometry, Setting, Settings, Shading, Shadows,
+    AmbientOcclusion, Antialiasing, DebugView, Geometry, LightingPass, Setting, Settings, Shading,
+    Shadows,
 };
 
 /// Stages that are missing on such devices.
@@ -15,10 +16,11 @@ const MISSING_STAGES: [&str; 4] = [
 ];
 
 /// Single settings that are missing there.
-const MISSING_KEYS: [&str; 13] = [
+const MISSING_KEYS: [&str; 14] = [
     "view",
     "geometry",
     "material-dispatch",
+    "lighting-pass",
     "shadows",
     "shadow-atlas",
     "shadow-texel",
@@ -51,6 +53,11 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
             "ambient-occlusion",
             s.lighting.ambient_occlusion == AmbientOcclusion::Off,
             "off",
+        ),
+        (
+            "lighting-pass",
+            s.lighting.pass != LightingPass::Compute,
+            "fragment",
         ),
         ("shading", s.shading.mode == Shading::Full, "full"),
     ];

@@ -12,7 +12,8 @@ use crate::gpu::{
 };
 
 use crate::rate::RateTargets;
-use crate::recorder::{Recorder, overwritten};
+use crate::recorder::Recorder;
+use crate::shading::every_pixel::{EveryPixel, Recipe};
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
 use crate::shadow::Place;
 use crate::targets::Targets;
@@ -41,13 +42,8 @@ struct Pass<P = wgpu::ComputePipeline> {
     layout: wgpu::BindGroupLayout,
 }
 
-/// The pass that writes what each pixel keeps: by drawing, because lavapipe takes much longer for a
-/// texture that a compute shader writes.
-fn reprojection(
-    gpu: &Gpu,
-    settings: &Settings,
-    frame: &wgpu::BindGroupLayout,
-) -> Pass<wgpu::RenderPipeline> {
+/// The pass that writes what each pixel keeps.
+fn reprojection(gpu: &Gpu, settings: &Settings, frame: &wgpu::BindGroupLayout) -> Pass<EveryPixel> {
     let label = "reprojection of light";
     let uint = sampled(wgpu::TextureSampleType::Uint);
     let words = sampled_layers(wgpu::TextureSampleType::Uint);
@@ -55,7 +51,7 @@ fn reprojection(
     let layout = bind_group_layout(
         gpu,
         label,
-        wgpu::ShaderStages::FRAGMENT,
+        wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
         &[
             uint,
             words,
@@ -70,18 +66,17 @@ fn reprojection(
             Table::binding_type(gpu),
         ],
     );
-    let targets = [LIGHT_FORMAT, SEEN_FORMAT, RADIANCE_FORMAT];
-    let pipeline = shader::screen(
+    let shader = shader::SHADING_HISTORY_REPROJECT;
+    let pipeline = EveryPixel::new(
         gpu,
-        &shader::Screen {
+        settings,
+        &Recipe {
+            label,
+            drawn: (shader, "reproject"),
+            dispatched: (shader.variant(&["DISPATCHED"]), "reproject_all"),
             groups: &[frame, &layout],
-            targets: &targets.map(|format| Some(format.into())),
+            targets: &[LIGHT_FORMAT, SEEN_FORMAT, RADIANCE_FORMAT],
             constants: &environment_constants(settings),
-            ..shader::Screen::of(
-                label,
-                &shader::module(gpu, label, shader::SHADING_HISTORY_REPROJECT),
-                "reproject",
-            )
         },
     );
     Pass { pipeline, layout }
@@ -92,7 +87,7 @@ fn reprojection(
 pub(super) struct HistoryPasses {
     keep: Pass,
     spread: Pass,
-    reproject: Pass<wgpu::RenderPipeline>,
+    reproject: Pass<EveryPixel>,
     list: Pass,
     size: Pass,
     shade: Pass,
@@ -379,12 +374,8 @@ impl HistoryPasses {
         pass.dispatch_workgroups(of_tiles, 1, 1);
         drop(pass);
         let written = [&h.light[frame.now], &h.seen[frame.now], &h.radiance];
-        let mut pass =
-            recorder.render_pass("reprojection of light", &written.map(overwritten), None);
-        pass.set_pipeline(&self.reproject.pipeline);
-        pass.set_bind_group(1, &reproject, &[]);
-        pass.draw(0..3, 0..1);
-        drop(pass);
+        let pass = &self.reproject.pipeline;
+        pass.run(recorder, "reprojection of light", &[&reproject], &written);
         let mut pass = recorder.compute_pass("reprojection of light");
         self.size_lists(&mut pass, frame);
         pass.set_pipeline(&self.list.pipeline);

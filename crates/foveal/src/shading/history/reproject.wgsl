@@ -1,6 +1,8 @@
 // Reprojects each pixel's light from the frame before, puts the pixel's surface into it, and
 // chooses what is reshaded. CPU twin: `shading/history/twin.rs`.
 
+#variant
+#variant DISPATCHED
 #import composite/tiling.wgsl
 #ifdef TABLES
 #import gpu/table.wgsl
@@ -13,7 +15,9 @@
 #import shared/layers.wgsl
 #import shared/surface.wgsl
 #import shared/environment.wgsl
+#ifndef DISPATCHED
 #import shared/full_screen.wgsl
+#endif
 
 @group(1) @binding(1) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
@@ -160,10 +164,8 @@ struct Reprojected {
 
 // The list is written at one place: devices that run all branches pay for each place, whether or not
 // anything is written there. What few pixels need follows in list.wgsl.
-@fragment
-fn reproject(@builtin(position) pixel_center: vec4f) -> Reprojected {
-    let pixel = pixel_center.xy;
-    let texel = vec2u(pixel);
+fn reprojected(texel: vec2u) -> Reprojected {
+    let pixel = vec2f(texel) + 0.5;
     if is_padding(texel, 0u) {
         return Reprojected();
     }
@@ -205,3 +207,24 @@ fn reproject(@builtin(position) pixel_center: vec4f) -> Reprojected {
     let shown = radiance_of(unpack_light(memory.light), s, v, environment_seen(pixel, distance));
     return Reprojected(memory.light, seen, vec4f(shown, 1.0));
 }
+
+#ifdef DISPATCHED
+@group(2) @binding(0) var light_kept: texture_storage_2d<rgba32uint, write>;
+@group(2) @binding(1) var seen_kept: texture_storage_2d<r32uint, write>;
+@group(2) @binding(2) var radiance_shown: texture_storage_2d<rgba16float, write>;
+
+@compute @workgroup_size(8, 8)
+fn reproject_all(@builtin(global_invocation_id) at: vec3u) {
+    if all(at.xy < textureDimensions(light_kept)) {
+        let kept = reprojected(at.xy);
+        textureStore(light_kept, at.xy, kept.light);
+        textureStore(seen_kept, at.xy, vec4u(kept.seen, 0u, 0u, 0u));
+        textureStore(radiance_shown, at.xy, kept.radiance);
+    }
+}
+#else
+@fragment
+fn reproject(@builtin(position) pixel_center: vec4f) -> Reprojected {
+    return reprojected(vec2u(pixel_center.xy));
+}
+#endif

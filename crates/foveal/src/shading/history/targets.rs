@@ -73,8 +73,7 @@ impl HistoryTargets {
         let size = EyeLayout::of(settings).target_size();
         let stored = wgpu::TextureUsages::STORAGE_BINDING;
         let target = |label, format| gpu::target(gpu, label, size, format, stored);
-        let drawn = wgpu::TextureUsages::empty();
-        let seen = |label| gpu::target(gpu, label, size, SEEN_FORMAT, drawn);
+        let seen = |label| target(label, SEEN_FORMAT);
         let buffer = |label, size, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
