@@ -7,9 +7,9 @@ use std::sync::LazyLock;
 
 use foveal::{
     AmbientOcclusion, Antialiasing, CoarseBackend, Composite, Culling, CullingEyes,
-    EnvironmentSource, Error, EyeClipping, Frame, Geometry, Gpu, LightAssignment, MaterialDispatch,
-    Output, RateSource, Renderer, RendererOptions, SamplePattern, Settings, Shading, Shadows,
-    Stereo,
+    EnvironmentSource, Error, EyeClipping, Frame, Geometry, Gpu, LightAssignment, LightingPass,
+    MaterialDispatch, Output, RateSource, Renderer, RendererOptions, SamplePattern, Settings,
+    Shading, Shadows, Stereo,
 };
 use foveal_generate as generate;
 use foveal_scene::{Camera, Scene};
@@ -19,7 +19,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestError, TestRng, TestRunner};
 
 /// Numbers by which a pair, its scene, its cameras and its settings are chosen.
-const NUMBERS: usize = 32;
+const NUMBERS: usize = 36;
 
 /// Frames until light that is kept has been shaded anew everywhere.
 const ROUND: usize = 20;
@@ -36,6 +36,8 @@ static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
 fn lit(mut scene: Scene) -> Scene {
     scene.light_by_default();
     generate::add_point_lights(&mut scene, 12, 3);
+    let last = scene.instances.last().expect("an instance").mesh;
+    scene.meshes[last as usize].deforms = true;
     scene
 }
 
@@ -91,12 +93,14 @@ fn settings(chance: &mut Chance<'_>) -> Settings {
     })
 }
 
-/// Two sides, how far apart a byte of their pictures may be, and whether the last frame alone counts.
+/// Two sides, how far apart a byte of their pictures may be, whether the last frame alone counts, and
+/// whether the second side draws no other.
 struct Pair {
     name: &'static str,
     sides: [Settings; 2],
     tolerance: u8,
     at_rest: bool,
+    skips: bool,
 }
 
 fn pair(chance: &mut Chance<'_>, both: &Settings) -> Pair {
@@ -107,8 +111,9 @@ fn pair(chance: &mut Chance<'_>, both: &Settings) -> Pair {
         sides,
         tolerance: 0,
         at_rest: false,
+        skips: false,
     };
-    match chance.of(&[0, 1, 2, 3, 4, 5, 6, 7]) {
+    match chance.of(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]) {
         0 => {
             let eyes = chance.of(&[CullingEyes::Each, CullingEyes::Shared]);
             let scale = chance.of(&[4, 1, 2, 7]);
@@ -188,6 +193,25 @@ fn pair(chance: &mut Chance<'_>, both: &Settings) -> Pair {
                 ..of("every pixel", sides(&full, &every))
             }
         }
+        7 => {
+            let side = |pass| move |s: &mut Settings| s.lighting.pass = pass;
+            let [a, b] = [LightingPass::Fragment, LightingPass::Compute];
+            of("passes", sides(&side(a), &side(b)))
+        }
+        8 => {
+            // Tiles lie elsewhere in the atlas of shadows, so that a texel at an edge may turn.
+            let full = |s: &mut Settings| {
+                s.shading.mode = Shading::Full;
+                s.lighting.shadows = Shadows::Off;
+                // Else it follows the size of the scene as it was set.
+                s.lighting.ambient_occlusion_radius_m = 0.4;
+            };
+            Pair {
+                at_rest: true,
+                skips: true,
+                ..of("afresh", sides(&full, &full))
+            }
+        }
         _ => Pair {
             tolerance: 1,
             ..of(
@@ -205,7 +229,7 @@ fn cameras(chance: &mut Chance<'_>, scene: &Scene, pair: &Pair) -> Vec<Camera> {
     let first = chance.of(&[0, 1, 2]) % scene.cameras.len();
     let step = chance.of(&[0.0, 0.02, 0.3]);
     let turn = chance.of(&[0.0, 0.01, 0.2]);
-    let frames = if pair.at_rest { 3 + ROUND } else { 3 };
+    let frames = if pair.at_rest { 4 + ROUND } else { 4 };
     (0..frames)
         .map(|frame| {
             let frame = frame.min(3) as f32;
@@ -217,12 +241,68 @@ fn cameras(chance: &mut Chance<'_>, scene: &Scene, pair: &Pair) -> Vec<Camera> {
         .collect()
 }
 
-/// The pictures of all frames, or of the last one; `None` where these settings cannot be drawn.
+/// The scene's poses in some frames; after the last one it rests.
+fn poses(chance: &mut Chance<'_>, scene: &Scene) -> Vec<Scene> {
+    let what = chance.of(&["", "", "thing", "lamp", "dim", "color", "shape", "all"]);
+    let which = usize::from(chance.of(&[0_u8, 1, 7, 50, 255]));
+    let frames = if what.is_empty() { 1 } else { 4 };
+    (0..frames)
+        .map(|frame| posed(scene, what, which, frame as f32))
+        .collect()
+}
+
+fn posed(scene: &Scene, what: &str, which: usize, frame: f32) -> Scene {
+    let mut scene = scene.clone();
+    let moves = |one| what == one || what == "all";
+    let along = Mat4::from_translation(Vec3::new(0.1, 0.02, -0.05) * frame);
+    if moves("thing") {
+        let count = scene.instances.len();
+        let instance = &mut scene.instances[which % count];
+        instance.world_from_object = along * instance.world_from_object;
+        instance.bounds = instance.bounds.transformed(along);
+        let object = &mut scene.objects[instance.object as usize];
+        object.bounds = object.bounds.union(instance.bounds);
+    }
+    let lamps = scene.lights.len();
+    let lamp = &mut scene.lights[which % lamps];
+    if moves("lamp") {
+        lamp.position += Vec3::new(0.2, 0.1, 0.0) * frame;
+    }
+    if moves("dim") {
+        lamp.intensity *= 1.0 - 0.3 * frame;
+    }
+    if moves("color") {
+        let materials = scene.materials.len();
+        scene.materials[which % materials].base_color[0] *= 1.0 - 0.2 * frame;
+    }
+    if moves("shape") {
+        let mesh = scene.instances.last().expect("an instance").mesh;
+        let shape = &mut scene.meshes[mesh as usize];
+        for vertex in &mut shape.vertices {
+            vertex.position[0] *= 1.0 + 0.1 * frame;
+        }
+        shape.bounds =
+            shape
+                .bounds
+                .transformed(Mat4::from_scale(Vec3::new(1.0 + 0.1 * frame, 1.0, 1.0)));
+        let bounds = shape.bounds;
+        for instance in scene.instances.iter_mut().filter(|i| i.mesh == mesh) {
+            instance.bounds = bounds.transformed(instance.world_from_object);
+            let object = &mut scene.objects[instance.object as usize];
+            object.bounds = object.bounds.union(instance.bounds);
+        }
+    }
+    scene
+}
+
+/// The pictures of all frames from `first` on, or of the last one; `None` where these settings cannot
+/// be drawn.
 fn pictures(
-    scene: &Scene,
+    poses: &[Scene],
     cameras: &[Camera],
     settings: &Settings,
     last_alone: bool,
+    first: usize,
 ) -> Option<Vec<Vec<u8>>> {
     block_on(async {
         let new = Renderer::new(&GPU, settings, RendererOptions::default());
@@ -230,9 +310,13 @@ fn pictures(
             Err(Error::Setting { .. } | Error::Limit { .. }) => return None,
             renderer => renderer.expect("nothing else fails"),
         };
-        renderer.set_scene(scene).await.expect("it fits");
+        let start = &poses[first.min(poses.len() - 1)];
+        renderer.set_scene(start).await.expect("it fits");
         let mut found = Vec::new();
-        for (i, camera) in cameras.iter().enumerate() {
+        for (i, camera) in cameras.iter().enumerate().skip(first) {
+            if let Some(pose) = poses.get(i).filter(|_| i > first) {
+                renderer.update_pose(pose).await.expect("it fits");
+            }
             let frame = Frame::new(camera).with_previous(&cameras[i.saturating_sub(1)]);
             renderer.render(&frame).await.expect("drawn");
             if !last_alone || i + 1 == cameras.len() {
@@ -248,12 +332,13 @@ fn compare(numbers: &[u8]) -> Result<bool, TestCaseError> {
     // Each has numbers of its own, so that fewer choices of one leave the others alone.
     let of = |range: std::ops::Range<usize>| Chance(numbers[range].iter());
     let scene = &SCENES[of(0..1).of(&[0, 1, 2, 3, 4])];
-    let both = settings(&mut of(8..NUMBERS));
+    let both = settings(&mut of(8..32));
     let pair = pair(&mut of(1..5), &both);
     let cameras = cameras(&mut of(5..8), scene, &pair);
-    let draw = |side| pictures(scene, &cameras, side, pair.at_rest);
-    let [a, b] = pair.sides.each_ref().map(draw);
-    let (Some(a), Some(b)) = (a, b) else {
+    let poses = poses(&mut of(32..NUMBERS), scene);
+    let draw = |side, first| pictures(&poses, &cameras, side, pair.at_rest, first);
+    let first = if pair.skips { cameras.len() - 1 } else { 0 };
+    let (Some(a), Some(b)) = (draw(&pair.sides[0], 0), draw(&pair.sides[1], first)) else {
         return Ok(false);
     };
     for (frame, (a, b)) in a.iter().zip(&b).enumerate() {
