@@ -20,7 +20,7 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = Line<'_>> {
         loop {
             let (index, first) = rest.next()?;
             let mut text = String::from_utf8_lossy(first.trim_ascii());
-            while text.ends_with('\\') && !text.starts_with('#') {
+            while text.ends_with('\\') && !has_comment(&text) {
                 let Some((_, next)) = rest.next() else { break };
                 let joined = text.to_mut();
                 joined.pop();
@@ -33,6 +33,11 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = Line<'_>> {
             }
         }
     })
+}
+
+/// Whether a line is a comment, or ends in one.
+fn has_comment(line: &str) -> bool {
+    line.starts_with('#') || line.contains(" #") || line.contains("\t#")
 }
 
 /// A name as it is kept.
