@@ -50,7 +50,7 @@ pub struct Args {
 
     /// Frames of each mode, after one that warms up; figures are their medians. Below 10 there is
     /// no interval
-    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
 
     /// Sub-samples of the SSAA picture that serves as the reference; 0: no reference
@@ -352,8 +352,8 @@ fn summary(report: &Report) -> String {
         lines.push(vec![
             row.name.clone(),
             format!("{:.2} %", row.edge_fraction * 100.0),
-            number_text(row.gbuffer_ms, 1),
-            number_text(row.shade_ms, 1),
+            number_text(row.gbuffer_ms, 2),
+            number_text(row.shade_ms, 2),
             format!("{:.1}", row.frame_ms),
             match row.finding {
                 Finding::NoDifference => format!("~ {:.3}", row.frame_ratio),

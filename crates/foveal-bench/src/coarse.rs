@@ -40,7 +40,7 @@ pub struct Args {
     size: Vec<(u32, u32)>,
 
     /// Point lights in place of the scene's lights; may be given several times
-    #[arg(long, value_name = "N", default_values_t = [200])]
+    #[arg(long, value_name = "N", default_values_t = [200], value_parser = values::point_lights)]
     lights: Vec<u32>,
 
     /// Range of each point light in metres; 0: no range, as in the original method [default:
@@ -79,7 +79,7 @@ pub struct Args {
     sweep: bool,
 
     /// Measured rounds, after one that warms up; below 10 the ratio has no interval
-    #[arg(long, value_name = "N", default_value_t = 3)]
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pairs: u32,
 }
 
@@ -322,11 +322,11 @@ fn print(row: &Row) {
         row.full_frame_ms,
         row.coarse_frame_ms,
         row.frame_ratio,
-        number_text(row.full_ms, 1),
-        number_text(row.coarse_ms, 1),
+        number_text(row.full_ms, 2),
+        number_text(row.coarse_ms, 2),
         times_text(row.ratio),
-        number_text(row.full_material_ms, 1),
-        number_text(row.coarse_material_ms, 1),
+        number_text(row.full_material_ms, 2),
+        number_text(row.coarse_material_ms, 2),
         row.flip_mean,
         jod_text(row.jod),
         row.fovea_differing,

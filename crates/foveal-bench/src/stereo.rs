@@ -68,7 +68,7 @@ pub struct Args {
     camera: CameraArgs,
 
     /// Frames of each way, after two that warm up; figures are their medians
-    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
 
     #[command(flatten)]
@@ -333,7 +333,7 @@ fn summary(report: &Report) -> String {
             row.draws.to_string(),
             format!("{:.3}", row.encode_ms),
             format!("{:.3}", row.submit_ms),
-            number_text(row.gpu_ms, 1),
+            number_text(row.gpu_ms, 2),
             format!("{:.1}", row.frame_ms),
             format!("{:.3}", row.ratio_frame),
             number_text(row.ratio_cpu, 3),

@@ -48,7 +48,7 @@ pub struct Args {
     step: f32,
 
     /// Measured frames, after those that warm up; figures are their medians
-    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
 }
 
@@ -287,7 +287,7 @@ fn measure(
 
 fn line(row: &Row) -> Vec<String> {
     let stage = name_of(row.stage);
-    let time = |ms: Option<f64>| number_text(ms, 1);
+    let time = |ms: Option<f64>| number_text(ms, 2);
     vec![
         format!("{stage}, {}, {} lights", row.material_cost, row.lights),
         format!("{:.3}", row.contrast_threshold),

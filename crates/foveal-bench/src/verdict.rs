@@ -43,7 +43,7 @@ pub struct Args {
     size: (u32, u32),
 
     /// Number of coloured point lights to add to the scene
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::point_lights)]
     point_lights: u32,
 
     /// Measured frames of each candidate, after eight that warm up; below 10 there is no verdict
@@ -211,8 +211,8 @@ fn summary(report: &Report) -> String {
         lines.push(vec![
             row.name.to_owned(),
             format!("{:?}", row.decision).to_lowercase(),
-            number_text(row.reference_ms, 1),
-            number_text(row.chosen_ms, 1),
+            number_text(row.reference_ms, 2),
+            number_text(row.chosen_ms, 2),
             row.gain.clone(),
             row.work_gain.clone().unwrap_or_default(),
             number_text(row.flip_mean, 4),

@@ -85,7 +85,15 @@ impl Difference {
         }
         let count = |change| pairs.iter().filter(|p| p.change == change).count();
         let (slower, faster) = (count(Change::Slower), count(Change::Faster));
-        let mut said = table(&pairs);
+        let [before, after] = [old, new].map(|report| &report["adapter"]["name"]);
+        let mut said = String::new();
+        if before != after {
+            said = format!(
+                "other adapters: {before} in '{}', {after} in '{}'\n",
+                names[0], names[1]
+            );
+        }
+        said += &table(&pairs);
         said += &format!(
             "{} times compared: {slower} slower, {faster} faster, {} within the noise\n",
             pairs.len(),
@@ -118,7 +126,7 @@ fn table(pairs: &[Pair]) -> String {
             pair.figure.clone(),
             format!("{:.3}", pair.old_ms),
             format!("{:.3}", pair.new_ms),
-            format!("{:.3}", pair.old_ms / pair.new_ms),
+            pair.ratio(3),
             format!("{:?}", pair.change).to_lowercase(),
         ]);
     }

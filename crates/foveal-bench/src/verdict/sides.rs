@@ -20,6 +20,17 @@ struct Side {
     notice: String,
 }
 
+/// What a frame says of techniques that turned themselves off.
+fn off_notice(stats: FrameStats) -> String {
+    let coarse = stats.coarse.map(|coarse| (coarse.active, coarse.notice));
+    let variable = (stats.variable).map(|variable| (variable.active, variable.notice));
+    let said = [coarse, variable].into_iter().flatten();
+    said.filter(|(is_active, notice)| !is_active && !notice.is_empty())
+        .map(|(_, notice)| notice)
+        .collect::<Vec<_>>()
+        .join("; ")
+}
+
 /// Draws the plain settings and the others in turn; what each of the others turned out to be.
 pub(super) fn measure(
     Subject { gpu, scene, camera }: &Subject,
@@ -113,13 +124,7 @@ impl Side {
         let stats: FrameStats = block_on(self.renderer.render(&frame))?;
         self.work_ms.push(process_ms() - before_ms);
         self.frame_ms.push(stats.frame_ms);
-        let coarse = stats.coarse.map(|coarse| coarse.notice);
-        let variable = stats.variable.map(|variable| variable.notice);
-        let said = [coarse, variable].into_iter().flatten();
-        self.notice = said
-            .filter(|notice| !notice.is_empty())
-            .collect::<Vec<_>>()
-            .join("; ");
+        self.notice = off_notice(stats);
         Ok(())
     }
 
@@ -152,4 +157,23 @@ fn process_ms() -> f64 {
     }
     #[cfg(not(unix))]
     0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use foveal::CoarseStats;
+
+    #[test]
+    fn a_technique_that_says_something_is_not_off_for_that() {
+        let stats = |active| {
+            let mut coarse = CoarseStats::default();
+            (coarse.active, coarse.notice) = (active, "said".to_owned());
+            let mut stats = FrameStats::default();
+            stats.coarse = Some(coarse);
+            stats
+        };
+        assert_eq!(off_notice(stats(true)), "");
+        assert_eq!(off_notice(stats(false)), "said");
+    }
 }

@@ -69,7 +69,7 @@ fn table(pairs: &[&Pair]) -> Markup {
                         td { (pair.figure) }
                         td { (format!("{:.3}", pair.old_ms)) }
                         td { (format!("{:.3}", pair.new_ms)) }
-                        td { (format!("{:.2}", pair.old_ms / pair.new_ms)) }
+                        td { (pair.ratio(2)) }
                         td class=(change) { (change) }
                     }
                 }

@@ -2,6 +2,8 @@
 
 use serde_json::Value;
 
+use crate::table::number_text;
+
 /// By what part a median must differ.
 const LEAST_CHANGE: f64 = 0.05;
 
@@ -24,6 +26,14 @@ pub(super) struct Pair {
     pub(super) change: Change,
 }
 
+impl Pair {
+    /// Old by new; a dash where either has no such time.
+    pub(super) fn ratio(&self, digits: usize) -> String {
+        let are_there = self.old_ms > 0.0 && self.new_ms > 0.0;
+        number_text(are_there.then(|| self.old_ms / self.new_ms), digits)
+    }
+}
+
 /// All times that both reports have.
 pub(super) fn pairs(old: &Value, new: &Value) -> Vec<Pair> {
     let mut pairs = Vec::new();
@@ -41,7 +51,10 @@ pub(super) fn pairs(old: &Value, new: &Value) -> Vec<Pair> {
                 if !is_time(key) {
                     continue;
                 }
-                if let (Some(old_ms), Some(new_ms)) = (old_row[key].as_f64(), row[key].as_f64()) {
+                if let (Some(old_ms), Some(new_ms)) = (old_row[key].as_f64(), row[key].as_f64())
+                    // Neither report has the stage.
+                    && (old_ms > 0.0 || new_ms > 0.0)
+                {
                     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
                     pairs.push(Pair {
                         bench: text(&bench["name"]),
@@ -74,6 +87,12 @@ fn bounds(rows: [&Value; 2], key: &str) -> Option<[[f64; 2]; 2]> {
         let spread = &row["spread"][key];
         Some([spread[0].as_f64()?, spread[1].as_f64()?])
     };
+    // What is equal in all passes has no spread, where another time of the row has one.
+    let of_equal_passes = |row: &Value| {
+        let several = row["spread"].as_object().is_some_and(|s| !s.is_empty());
+        let ms = row[key].as_f64().filter(|_| several)?;
+        of_passes(row).or(Some([ms, ms]))
+    };
     let of_ratio = |row: &Value| {
         let [low, high] = match key {
             "chosen_ms" => ["low", "high"],
@@ -84,7 +103,9 @@ fn bounds(rows: [&Value; 2], key: &str) -> Option<[[f64; 2]; 2]> {
         Some([1.0 / row[high].as_f64()?, 1.0 / row[low].as_f64()?])
     };
     let both = |of: &dyn Fn(&Value) -> Option<[f64; 2]>| Some([of(rows[0])?, of(rows[1])?]);
-    both(&of_passes).or_else(|| both(&of_ratio))
+    both(&of_passes)
+        .or_else(|| both(&of_ratio))
+        .or_else(|| both(&of_equal_passes))
 }
 
 fn change([old, new]: [f64; 2], bounds: Option<[[f64; 2]; 2]>) -> Change {
@@ -178,5 +199,22 @@ mod tests {
         assert_eq!(only(&old, &report(12.0, [11.5, 13.0])), Change::Same);
         let old = report(10.0, [10.0, 10.0]);
         assert_eq!(only(&old, &report(10.4, [10.4, 10.4])), Change::Same);
+    }
+
+    #[test]
+    fn a_time_that_is_equal_in_all_passes_may_have_changed() {
+        let row = |ms: f64| json!({ "reproject_ms": ms, "frame_ms": 9.0, "spread": { "frame_ms": [8.0, 10.0] } });
+        let [old, new] = reports([row(0.0), row(5.0)]);
+        let found = pairs(&old, &new);
+        let of = |figure: &str| found.iter().find(|p| p.figure == figure).unwrap();
+        assert_eq!(of("reproject_ms").change, Change::Slower);
+        assert_eq!(of("reproject_ms").ratio(2), "-");
+        assert_eq!(of("frame_ms").change, Change::Same);
+        let [old, new] = reports([row(0.0), row(0.0)]);
+        assert_eq!(
+            pairs(&old, &new).len(),
+            1,
+            "what neither has is not compared"
+        );
     }
 }
