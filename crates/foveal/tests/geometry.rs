@@ -12,7 +12,9 @@ use foveal_generate as generate;
 use foveal_scene::{LoadOptions, Scene};
 
 /// Mean FLIP that rounding and derivatives at silhouettes may cost.
-const MAX_FLIP: f32 = 0.006;
+const MAX_FLIP: f32 = 0.005;
+/// The same where hardware filters textures.
+const MAX_FLIP_ON_HARDWARE: f32 = 0.006;
 const WIDTH: u32 = 240;
 const HEIGHT: u32 = 135;
 
@@ -35,9 +37,14 @@ fn picture(renderer: &mut Renderer, scene: &Scene) -> nv_flip::FlipImageRgb8 {
     nv_flip::FlipImageRgb8::with_data(WIDTH, HEIGHT, &rgb)
 }
 
-fn renderers() -> [Renderer; 2] {
+/// A renderer by each geometry, and the most mean FLIP between them.
+fn renderers() -> ([Renderer; 2], f32) {
     let gpu = pollster::block_on(Gpu::open(None)).expect("the tests need a graphics adapter");
-    [Geometry::Gbuffer, Geometry::Visibility].map(|geometry| {
+    let most = match gpu.adapter_stats().kind.as_str() {
+        "cpu" => MAX_FLIP,
+        _ => MAX_FLIP_ON_HARDWARE,
+    };
+    let renderers = [Geometry::Gbuffer, Geometry::Visibility].map(|geometry| {
         let settings = Settings::default().with(|s| {
             s.picture.width = WIDTH;
             s.picture.height = HEIGHT;
@@ -51,15 +58,16 @@ fn renderers() -> [Renderer; 2] {
             foveal::RendererOptions::default(),
         ))
         .expect("settings fit")
-    })
+    });
+    (renderers, most)
 }
 
-fn assert_alike(renderers: &mut [Renderer; 2], name: &str, scene: &Scene) {
+fn assert_alike((renderers, most): &mut ([Renderer; 2], f32), name: &str, scene: &Scene) {
     let [raster, triangles] = renderers.each_mut().map(|r| picture(r, scene));
     let map = nv_flip::flip(raster, triangles, nv_flip::DEFAULT_PIXELS_PER_DEGREE);
     let mean = nv_flip::FlipPool::from_image(&map).mean();
     println!("{name}: mean FLIP {mean:.5}");
-    assert!(mean < MAX_FLIP, "{name}: mean FLIP {mean}");
+    assert!(mean < *most, "{name}: mean FLIP {mean}");
 }
 
 #[test]
