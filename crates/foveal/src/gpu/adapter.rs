@@ -24,25 +24,27 @@ async fn preferred() -> Vec<wgpu::Adapter> {
     }
 }
 
-/// The graphics interfaces `backends`, loaded.
-#[cfg(target_family = "wasm")]
+/// The graphics interfaces `backends`, loaded for the caller alone. Devices of one instance share what
+/// the driver keeps for it, and lavapipe (Mesa 22.3) reads there of other devices what their threads are
+/// writing: devices that draw at the same time crash now and then. Devices of instances of their own do
+/// not.
 fn instance(backends: wgpu::Backends) -> wgpu::Instance {
+    #[cfg(not(target_family = "wasm"))]
+    keep_loaded(backends);
     new_instance(backends)
 }
 
-/// The graphics interfaces `backends`, loaded once and kept until the process ends. With the last
-/// instance that is dropped the driver's library is unloaded, and what the driver has arranged for a
-/// thread's end is then missing: a thread that has used NVIDIA's (580.159) and ends later crashes.
+/// Keeps the drivers of `backends` loaded until the process ends, by an instance that nothing else
+/// uses. With the last instance that is dropped a driver's library is unloaded, and what it has
+/// arranged for a thread's end is then missing: a thread that has used NVIDIA's (580.159) and ends later
+/// crashes.
 #[cfg(not(target_family = "wasm"))]
-fn instance(backends: wgpu::Backends) -> wgpu::Instance {
+fn keep_loaded(backends: wgpu::Backends) {
     static KEPT: Mutex<Vec<(wgpu::Backends, wgpu::Instance)>> = Mutex::new(Vec::new());
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, instance)) = kept.iter().find(|(of, _)| *of == backends) {
-        return instance.clone();
+    if kept.iter().all(|(of, _)| *of != backends) {
+        kept.push((backends, new_instance(backends)));
     }
-    let instance = new_instance(backends);
-    kept.push((backends, instance.clone()));
-    instance
 }
 
 fn new_instance(backends: wgpu::Backends) -> wgpu::Instance {
