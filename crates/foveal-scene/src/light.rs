@@ -45,7 +45,7 @@ pub struct Light {
     pub position: Vec3,
     /// Unit vector of travel of the light's rays (unused by point lights).
     pub direction: Vec3,
-    /// Distance in metres at which it ends; `None` for the file's 'infinite'.
+    /// Distance in metres at which it ends; `None`, or infinite: where it becomes invisible.
     pub range_m: Option<f32>,
     /// The glTF node that carries it, so that animation can move it.
     pub node: Option<u32>,

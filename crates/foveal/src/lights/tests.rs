@@ -119,3 +119,13 @@ fn a_light_two_millimetres_before_a_surface_lights_it_by_the_inverse_square() {
         );
     }
 }
+
+#[test]
+fn an_infinite_range_is_that_of_a_light_without_one() {
+    let (mut scene, _) = lit_square(1.0, 5.0, 2.0);
+    let range = |scene: &Scene| super::LightUniform::all(&scene.lights, 0.0)[0].range;
+    scene.lights[0].range_m = None;
+    let derived = range(&scene);
+    scene.lights[0].range_m = Some(f32::INFINITY);
+    assert!(derived.is_finite() && range(&scene) == derived);
+}

@@ -67,8 +67,7 @@ impl LightUniform {
     fn new(light: &Light, faintest: f32) -> Self {
         let radiant = light.color * light.intensity;
         // An infinite light would be in every cluster: it ends where it has become invisible.
-        let range = light
-            .range_m
+        let range = (light.range_m.filter(|range| range.is_finite()))
             .unwrap_or_else(|| (radiant.max_element() / faintest).max(0.0).sqrt());
         let (kind, spot_scale, spot_offset, cone) = match light.kind {
             LightKind::Directional => (0, 0.0, 1.0, (-1.0, 0.0)),

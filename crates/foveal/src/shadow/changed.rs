@@ -16,23 +16,24 @@ const TO_CORNERS: f32 = 1.7321;
 /// A sphere: centre and radius in metres, world space.
 pub(crate) type Place = [f32; 4];
 
-/// Spheres that hold all shadows of the boxes by lights whose shadows are in tiles; `scene` is the
-/// box around everything. `lamps`: radius of point and spot lights in metres, and tangent of half the
-/// angle that directional ones fill.
+/// Spheres that hold all places where lookups find shadows of the boxes, by lights whose shadows are in
+/// tiles; `scene` is the box around everything. `lamps`: radius of point and spot lights in metres, and
+/// tangent of half the angle that directional ones fill. `beside`: metres by which a light's lookups
+/// reach beside the place that they are for; `None` without tiles.
 pub(super) fn changed_places(
     lights: &[LightUniform],
     lamps: [f32; 2],
     boxes: &[Aabb],
     scene: &Aabb,
-    mut has_shadows: impl FnMut(usize) -> bool,
+    mut beside: impl FnMut(usize) -> Option<f32>,
 ) -> Vec<Place> {
     let mut places: Vec<Place> = Vec::new();
     for (number, light) in lights.iter().enumerate() {
-        if !has_shadows(number) {
+        let Some(beside) = beside(number) else {
             continue;
-        }
+        };
         for b in boxes.iter().filter(|b| reaches(light, b)) {
-            add_place(&mut places, shadow_of(light, lamps, b, scene), MOST);
+            add_place(&mut places, shadow_of(light, lamps, beside, b, scene), MOST);
         }
     }
     places
@@ -55,8 +56,14 @@ fn reaches(light: &LightUniform, b: &Aabb) -> bool {
         || at.clamp(b.min, b.max).distance_squared(at) < light.range * light.range
 }
 
-/// A sphere around a box and its shadow.
-fn shadow_of(light: &LightUniform, [lamp, sun]: [f32; 2], b: &Aabb, scene: &Aabb) -> Place {
+/// A sphere around a box and its shadow, with what it blurs into.
+fn shadow_of(
+    light: &LightUniform,
+    [lamp, sun]: [f32; 2],
+    beside: f32,
+    b: &Aabb,
+    scene: &Aabb,
+) -> Place {
     let (center, radius) = (b.center(), b.half_extent().length());
     if light.is_directional() {
         // The ray ends where the scene does.
@@ -64,7 +71,7 @@ fn shadow_of(light: &LightUniform, [lamp, sun]: [f32; 2], b: &Aabb, scene: &Aabb
         let beyond = scene.center() - center;
         let reach = along.dot(beyond) + along.abs().dot(scene.half_extent());
         let half = 0.5 * reach.max(0.0);
-        let fades = AMONG_OTHERS * sun * 2.0 * half;
+        let fades = AMONG_OTHERS * sun * 2.0 * half + beside;
         return (center + along * half)
             .extend(half + radius + fades)
             .to_array();
@@ -74,7 +81,8 @@ fn shadow_of(light: &LightUniform, [lamp, sun]: [f32; 2], b: &Aabb, scene: &Aabb
     let distance = to.length();
     // Past an edge, the lamp's border is seen so far beside the shadow at the range.
     let past_edges = (light.range / (distance - radius).max(1e-6) - 1.0).max(0.0);
-    let fades = AMONG_OTHERS * TO_CORNERS * lamp * past_edges;
+    // A place within the range looks up ones that may lie beyond it.
+    let fades = AMONG_OTHERS * TO_CORNERS * lamp * past_edges + 2.0 * beside;
     if distance <= radius || fades >= light.range {
         return apex.extend(light.range).to_array();
     }
@@ -151,7 +159,7 @@ mod tests {
         let b = Aabb::new(Vec3::new(0.2, 0.9, -0.4), Vec3::new(0.8, 1.6, 0.1));
         for kind in [0, 1] {
             let light = light(kind);
-            let place = shadow_of(&light, [0.0; 2], &b, &scene());
+            let place = shadow_of(&light, [0.0; 2], 0.0, &b, &scene());
             for corner in b.corners() {
                 assert!(is_in(place, corner));
                 for step in 0..100 {
@@ -178,13 +186,13 @@ mod tests {
     #[test]
     fn what_the_light_does_not_reach_changes_nothing() {
         let far = Aabb::new(Vec3::splat(8.0), Vec3::splat(9.0));
-        assert!(changed_places(&[light(1)], [0.0; 2], &[far], &scene(), |_| true).is_empty());
+        assert!(changed_places(&[light(1)], [0.0; 2], &[far], &scene(), |_| Some(0.0)).is_empty());
         let near = Aabb::new(Vec3::splat(1.0), Vec3::splat(1.5));
         assert_eq!(
-            changed_places(&[light(1)], [0.0; 2], &[near], &scene(), |_| true).len(),
+            changed_places(&[light(1)], [0.0; 2], &[near], &scene(), |_| Some(0.0)).len(),
             1
         );
-        assert!(changed_places(&[light(1)], [0.0; 2], &[near], &scene(), |_| false).is_empty());
+        assert!(changed_places(&[light(1)], [0.0; 2], &[near], &scene(), |_| None).is_empty());
     }
 
     #[test]
@@ -193,7 +201,9 @@ mod tests {
             .map(|i| Vec3::new(i as f32 * 0.05 - 1.0, 1.0, (i % 7) as f32 * 0.2))
             .map(|at| Aabb::new(at, at + 0.1))
             .collect();
-        let places = changed_places(&[light(1), light(0)], [0.0; 2], &boxes, &scene(), |_| true);
+        let places = changed_places(&[light(1), light(0)], [0.0; 2], &boxes, &scene(), |_| {
+            Some(0.0)
+        });
         assert!(places.len() <= MOST);
         for b in &boxes {
             assert!(

@@ -13,7 +13,7 @@ use crate::{Geometry, RateSource, Settings, Shading, Shadows};
 /// Height of the lamp above the floor.
 const LAMP: f32 = 3.0;
 
-fn level(x: [f32; 2], y: f32, z: [f32; 2]) -> foveal_scene::Mesh {
+pub(super) fn level(x: [f32; 2], y: f32, z: [f32; 2]) -> foveal_scene::Mesh {
     flat([
         Vec3::new(x[0], y, z[1]),
         Vec3::new(x[1], y, z[1]),
@@ -23,7 +23,7 @@ fn level(x: [f32; 2], y: f32, z: [f32; 2]) -> foveal_scene::Mesh {
 }
 
 /// A floor below a lamp.
-fn floor(lamp_at: Vec3) -> Scene {
+pub(super) fn floor(lamp_at: Vec3) -> Scene {
     let mut scene = bare();
     add(&mut scene, [level([-4.0, 4.0], 0.0, [-4.0, 4.0])]);
     scene.lights.push(lamp(lamp_at, 20.0));

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use foveal_scene::Aabb;
 
 use super::atlas::{Atlas, Tile};
+use super::footprint::texel_at;
 use super::mask::Mask;
 use super::plan::Wanted;
 use super::volume::Volume;
@@ -129,10 +130,17 @@ impl KeptTiles {
         self.tiles.get_mut(&key(want))
     }
 
-    /// Whether any of these slots has a tile.
-    pub(super) fn has_any(&self, slots: std::ops::Range<u32>) -> bool {
-        let mut tiles = self.tiles.range((slots.start, 0)..(slots.end, 0));
-        tiles.next().is_some()
+    /// Metres that the widest texel of these slots' tiles spans; `None` without tiles.
+    pub(super) fn widest_texel(&self, slots: std::ops::Range<u32>) -> Option<f32> {
+        let tiles = self.tiles.range((slots.start, 0)..(slots.end, 0));
+        let texel = |kept: &Kept| {
+            let reach = match kept.volume {
+                Volume::Pyramid { range, .. } => range,
+                Volume::Column { .. } => 0.0,
+            };
+            texel_at(&kept.volume, kept.tile.side() as f32, reach)
+        };
+        tiles.map(|(_, kept)| texel(kept)).reduce(f32::max)
     }
 
     /// The tile has been drawn, without some casters. Whether a frame had to wait for it.
@@ -201,13 +209,24 @@ impl KeptTiles {
         sizes.map(|(&(_, level), kept)| (level, kept))
     }
 
-    /// What can be looked into in place of a tile that is not drawn.
+    /// What can be looked into in place of a tile that is not drawn: one of the current shadows
+    /// sooner than one of earlier ones, and of these the one of the nearest size.
     fn stand_in(&self, want: &Wanted) -> Option<(u32, (Tile, Volume))> {
         let usable = self.sizes_of(want.slot).filter_map(|(level, kept)| {
             let held = kept.held.filter(|held| want.volume.can_look_into(held))?;
-            Some((level, (kept.tile, held)))
+            let is_old = !kept.is_drawn;
+            Some((
+                (is_old, level.abs_diff(want.level), level),
+                (kept.tile, held),
+            ))
         });
-        usable.min_by_key(|&(level, _)| (level.abs_diff(want.level), level))
+        let best = usable.min_by_key(|&(order, _)| order);
+        best.map(|((_, _, level), shown)| (level, shown))
+    }
+
+    /// A frame needs what the one before needed.
+    pub(super) fn rest(&mut self) {
+        self.frame += 1;
     }
 
     /// Tiles that were drawn without some casters must be drawn again: nobody says any more what is

@@ -7,14 +7,12 @@
 use foveal_scene::Aabb;
 
 use super::footprint::{Footprint, texel_at};
+use super::records::MOST_MOVED;
 use super::volume::Volume;
 
 /// Most parts of a tile along each side, and texels that a part has at least.
 const PARTS: usize = 32;
 const TEXELS: f32 = 2.0;
-/// As `shadow_offset` in `shadow/lookup.wgsl`: places are moved by up to so many texels, times the
-/// bias.
-const MOST_MOVED: f32 = 1.4;
 
 /// What may be seen of a tile's shadows.
 #[derive(Clone, Debug)]

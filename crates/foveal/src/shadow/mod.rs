@@ -13,6 +13,8 @@ mod atlas;
 mod budget_tests;
 mod changed;
 #[cfg(test)]
+mod changed_tests;
+#[cfg(test)]
 mod contact_tests;
 #[cfg(test)]
 mod culling_tests;
@@ -20,6 +22,7 @@ mod footprint;
 mod hidden;
 mod kept;
 mod mask;
+mod near;
 mod part;
 mod pass;
 mod plan;

@@ -1,6 +1,8 @@
 //! Which tiles a frame wants, and how large: a function of lights, view, gaze and settings alone, so
 //! that the picture does not depend on what was drawn before, nor on culling.
 
+use std::collections::BTreeSet;
+
 use foveal_scene::Aabb;
 use glam::{Mat4, Vec3, Vec4};
 
@@ -60,12 +62,15 @@ pub(super) struct ViewOfPlan {
     texel: f32,
     orthographic: bool,
     eyes: [Eye; 2],
+    /// Part of the picture by which points and lines reach into it from beside.
+    beside: f32,
     /// How finely parts of the picture are shaded, where tiles are to be as coarse.
     rates: Option<FinestRate>,
 }
 
 impl ViewOfPlan {
     pub(super) fn new(eyes: &[Eye; 2], settings: &Settings, rates: Option<FinestRate>) -> Self {
+        let widest = (settings.geometry.point_size_px).max(settings.geometry.line_width_px);
         let pixel = 2.0 * eyes[0].view_from_ndc()[1].abs() / settings.picture.height as f32;
         Self {
             clip_from_world: [eyes[0].clip_from_world(), eyes[1].clip_from_world()],
@@ -73,8 +78,17 @@ impl ViewOfPlan {
             texel: pixel * settings.lighting.shadow_texel_px,
             orthographic: eyes[0].orthographic,
             eyes: *eyes,
+            beside: widest / settings.picture.width.min(settings.picture.height) as f32,
             rates,
         }
+    }
+
+    /// The planes of what the eyes see, and of what reaches into it.
+    fn planes(&self) -> [[Vec4; 6]; 2] {
+        let shrink = 1.0 / (1.0 + self.beside);
+        let shrink = Mat4::from_scale(Vec3::new(shrink, shrink, 1.0));
+        self.clip_from_world
+            .map(|clip| frustum_planes(shrink * clip))
     }
 
     /// Powers of two by which samples are farther apart than pixels wherever a tile's shadows are
@@ -108,8 +122,8 @@ impl ViewOfPlan {
 pub(super) struct Plan {
     /// By slot.
     pub(super) wanted: Vec<Wanted>,
-    /// Lights that some tile would have held, had there been room.
-    pub(super) lights_left_out: u32,
+    /// Slots of tiles for which there is no room.
+    left_out: BTreeSet<u32>,
     /// By how many powers of two tiles are smaller than the view asks for.
     pub(super) shrunk_by: f32,
 }
@@ -133,7 +147,7 @@ impl Plan {
         scene: &Aabb,
         atlas_level: u32,
     ) -> Self {
-        let planes = view.clip_from_world.map(frustum_planes);
+        let planes = view.planes();
         let mut requests = Vec::new();
         for (number, light) in (0..).zip(lights) {
             let slot = number * TILES_PER_LIGHT as u32;
@@ -144,6 +158,19 @@ impl Plan {
             }
         }
         settle(requests, atlas_level)
+    }
+
+    /// Those of another plan's tiles for which this one has no room.
+    pub(super) fn left_out_of<'a>(&self, wanted: &'a [Wanted]) -> impl Iterator<Item = &'a Wanted> {
+        let is_out = |want: &&Wanted| self.left_out.contains(&want.slot);
+        wanted.iter().filter(is_out)
+    }
+
+    /// Lights that some tile would have held, had there been room.
+    pub(super) fn lights_left_out(&self) -> usize {
+        let light = |slot: &u32| slot / TILES_PER_LIGHT as u32;
+        let lights: BTreeSet<u32> = self.left_out.iter().map(light).collect();
+        lights.len()
     }
 }
 
@@ -181,17 +208,12 @@ fn settle(mut requests: Vec<Request>, atlas_level: u32) -> Plan {
         };
     }
     let shrunk_by = shrunk(low);
-    let mut left_out = Vec::new();
+    let mut left_out = BTreeSet::new();
     if area(&requests, shrunk_by) > room {
         requests.sort_by(|a, b| b.level.total_cmp(&a.level).then(a.slot.cmp(&b.slot)));
         let fitting = (room / unit_area(LEAST_LEVEL)) as usize;
         let out = requests.split_off(fitting.min(requests.len()));
-        left_out = out
-            .iter()
-            .map(|r| r.slot / TILES_PER_LIGHT as u32)
-            .collect();
-        left_out.sort_unstable();
-        left_out.dedup();
+        left_out = out.iter().map(|r| r.slot).collect();
         requests.sort_by_key(|r| r.slot);
     }
     Plan {
@@ -204,7 +226,7 @@ fn settle(mut requests: Vec<Request>, atlas_level: u32) -> Plan {
                 follows_rate: level_of(r, shrunk_by) < whole(r, r.level_by_view, shrunk_by),
             })
             .collect(),
-        lights_left_out: left_out.len() as u32,
+        left_out,
         shrunk_by,
     }
 }
@@ -272,9 +294,9 @@ fn sides(
     }
 }
 
-/// The cascades of a directional light: squares around the eye, each four times as wide as the one
-/// before; the last one holds the scene as far as it can be seen. They move in steps, so that they
-/// stay as they are while the eye turns or moves a little.
+/// The cascades of a directional light: squares around the eye, or around the place of the scene that
+/// is nearest to it, each four times as wide as the one before; the last one holds the scene. They
+/// move in steps, so that they stay as they are while the eye turns or moves a little.
 fn cascades(
     light: &LightUniform,
     view: &ViewOfPlan,
@@ -286,6 +308,7 @@ fn cascades(
         return;
     }
     let axes = axes_along(light.direction.into());
+    let around = view.center.clamp(scene.min, scene.max);
     let (center, half) = (scene.center(), scene.half_extent());
     let extent = |axis: Vec3| (axis.dot(center), axis.abs().dot(half));
     let (along, reach) = extent(axes[2]);
@@ -296,7 +319,7 @@ fn cascades(
     let farthest = (0..2)
         .map(|i| {
             let (at, reach) = extent(axes[i]);
-            (axes[i].dot(view.center) - at).abs() + reach
+            (axes[i].dot(around) - at).abs() + reach
         })
         .fold(0.0, f32::max);
     let held = 1.0 - 0.5 * CASCADE_MOVE - 0.05;
@@ -304,7 +327,7 @@ fn cascades(
     for cascade in 0..CASCADES {
         let radius = 2.0_f32.powi(last - CASCADE_STEP * (CASCADES - 1 - cascade) as i32);
         let step = radius * CASCADE_MOVE;
-        let snapped = |axis: Vec3| (axis.dot(view.center) / step).round() * step;
+        let snapped = |axis: Vec3| (axis.dot(around) / step).round() * step;
         requests.push(Request {
             slot: slot + cascade as u32,
             level: LARGEST_CASCADE as f32 + CASCADES_LAST,
@@ -321,190 +344,4 @@ fn cascades(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::ShadowSizes;
-    use foveal_scene::Camera;
-
-    fn lamp(x: f32, range: f32) -> LightUniform {
-        LightUniform {
-            position: [x, 0.0, 0.0],
-            range,
-            radiant: [1.0; 3],
-            kind: 1,
-            ..LightUniform::default()
-        }
-    }
-
-    fn view_from(x: f32, y: f32, z: f32) -> ViewOfPlan {
-        let camera = Camera::look_at(Vec3::new(x, y, z), Vec3::ZERO, Vec3::Y, 1.0);
-        let settings = crate::testing::small(1280, 720);
-        let eyes = crate::stereo::eyes(&settings, &camera).expect("a camera that makes sense");
-        ViewOfPlan::new(&eyes, &settings, None)
-    }
-
-    fn room() -> Aabb {
-        Aabb::new(Vec3::splat(-20.0), Vec3::splat(20.0))
-    }
-
-    fn area(plan: &Plan) -> u64 {
-        plan.wanted.iter().map(|w| unit_area(w.level)).sum()
-    }
-
-    #[test]
-    fn a_light_has_larger_tiles_the_nearer_it_is() {
-        let level = |z| {
-            let plan = Plan::new(&[lamp(0.0, 4.0)], &view_from(0.0, 0.0, z), &room(), 12);
-            plan.wanted.iter().map(|w| w.level).max().unwrap()
-        };
-        assert!(level(6.0) > level(24.0));
-        assert!(level(24.0) > level(96.0));
-        assert!(level(1e5) == LEAST_LEVEL);
-    }
-
-    #[test]
-    fn all_tiles_fit_whatever_the_number_of_lights() {
-        for count in [1, 10, 200, 3_000, 16_000] {
-            let lights: Vec<_> = (0..count).map(|i| lamp(i as f32 * 1e-3, 6.0)).collect();
-            for atlas_level in [8, 12] {
-                let plan = Plan::new(&lights, &view_from(0.0, 0.0, 5.0), &room(), atlas_level);
-                assert!(area(&plan) <= unit_area(atlas_level), "{count} lights");
-                assert!(plan.wanted.is_sorted_by_key(|w| w.slot));
-                let least = count as usize * 4 * usize::from(plan.lights_left_out == 0);
-                assert!(plan.wanted.len() >= least, "{count} lights");
-                let is_full = area(&plan) == unit_area(atlas_level);
-                assert!(plan.lights_left_out == 0 || is_full);
-            }
-        }
-    }
-
-    #[test]
-    fn all_lights_shrink_alike() {
-        let lights: Vec<_> = (0..400).map(|i| lamp(i as f32 * 1e-3, 6.0)).collect();
-        let plan = Plan::new(&lights, &view_from(0.0, 0.0, 5.0), &room(), 11);
-        let levels = || plan.wanted.iter().map(|w| w.level);
-        assert_eq!(levels().min(), levels().max());
-        assert!(plan.shrunk_by > 0.0);
-    }
-
-    #[test]
-    fn in_a_full_atlas_a_step_changes_few_sizes() {
-        let lights: Vec<_> = (0..400)
-            .map(|i| lamp(0.05 * i as f32 - 10.0, 1.0 + 0.01 * i as f32))
-            .collect();
-        let levels = |z| {
-            let plan = Plan::new(&lights, &view_from(0.0, 0.0, z), &room(), 11);
-            assert!(plan.shrunk_by > 0.5);
-            let levels = plan.wanted.iter().map(|w| (w.slot, w.level));
-            levels.collect::<std::collections::BTreeSet<_>>()
-        };
-        let mut before = levels(6.0);
-        for step in 1..40 {
-            let now = levels(6.0 + 0.1 * step as f32);
-            let new = now.difference(&before).count();
-            assert!(new * 5 < now.len(), "{new} of {}", now.len());
-            before = now;
-        }
-    }
-
-    #[test]
-    fn cascades_shrink_after_the_tiles_of_lamps() {
-        let sun = LightUniform {
-            kind: 0,
-            direction: [0.0, -1.0, 0.0],
-            radiant: [1.0; 3],
-            ..LightUniform::default()
-        };
-        let plan = |count: usize| {
-            let lamps = (0..count).map(|i| lamp(i as f32 * 1e-3, 6.0));
-            let lights: Vec<_> = std::iter::once(sun).chain(lamps).collect();
-            Plan::new(&lights, &view_from(0.0, 0.0, 5.0), &room(), 12)
-        };
-        let sizes = |plan: &Plan| [0, 4].map(|tile| plan.wanted[tile].level);
-        let halved = plan(40);
-        assert!(halved.shrunk_by >= CASCADES_LAST);
-        let [cascade, side] = sizes(&halved);
-        assert!(cascade == LARGEST_CASCADE && side < LARGEST_SIDE);
-        let much = plan(800);
-        assert!(sizes(&much)[0] < LARGEST_CASCADE);
-    }
-
-    /// Wants of 40 lights in a wall, seen with the gaze at a place of the picture.
-    fn wanted_at(gaze: [f32; 2], sizes: ShadowSizes) -> Vec<Wanted> {
-        let lights: Vec<_> = (0..40)
-            .map(|i| lamp((i % 20) as f32 - 9.5, 1.0 + (i / 20) as f32))
-            .collect();
-        let camera = Camera::look_at(Vec3::new(0.0, 0.0, 9.0), Vec3::ZERO, Vec3::Y, 1.0);
-        let settings = crate::testing::small(1280, 720).with(|s| {
-            s.eye.gaze = gaze;
-            s.eye.quality_jod = 9.0;
-        });
-        let eyes = crate::stereo::eyes(&settings, &camera).expect("a camera that makes sense");
-        let rates = FinestRate::new(&settings, &eyes).filter(|_| sizes == ShadowSizes::Rate);
-        let view = ViewOfPlan::new(&eyes, &settings, rates);
-        Plan::new(&lights, &view, &room(), 12).wanted
-    }
-
-    #[test]
-    fn tiles_are_coarser_where_samples_are_and_as_fine_as_ever_at_the_gaze() {
-        let at = |gaze| wanted_at(gaze, ShadowSizes::Rate);
-        let by_view = wanted_at([0.5, 0.5], ShadowSizes::View);
-        assert!(by_view.iter().all(|w| !w.follows_rate));
-        let area = |wanted: &[Wanted]| wanted.iter().map(|w| unit_area(w.level)).sum::<u64>();
-        for gaze in [[0.5, 0.5], [0.1, 0.5]] {
-            let by_rate = at(gaze);
-            assert!(2 * area(&by_rate) < area(&by_view), "{gaze:?}");
-            for (rate, view) in by_rate.iter().zip(&by_view) {
-                assert_eq!(rate.slot, view.slot);
-                assert!(rate.level <= view.level);
-                assert_eq!(rate.follows_rate, rate.level < view.level);
-                // The light that the eye looks at.
-                let Volume::Pyramid { apex, .. } = rate.volume else {
-                    panic!("{:?}", rate.volume);
-                };
-                let ndc = apex.x / (9.0 * 0.5_f32.tan() * 1280.0 / 720.0);
-                if (0.5 + 0.5 * ndc - gaze[0]).abs() < 0.03 {
-                    assert_eq!(rate.level, view.level, "{apex}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn few_tiles_change_where_the_gaze_moves_a_little() {
-        let at = |x: f32| wanted_at([x, 0.5], ShadowSizes::Rate);
-        let mut changes = 0;
-        let steps = 100;
-        for step in 0..steps {
-            // About a fifth of a degree.
-            let (a, b) = (at(0.4 + step as f32 * 2e-3), at(0.402 + step as f32 * 2e-3));
-            assert_eq!(a, at(0.4 + step as f32 * 2e-3));
-            changes += a.iter().zip(&b).filter(|(a, b)| a.level != b.level).count();
-        }
-        let tiles = at(0.5).len();
-        assert!(
-            changes > 0 && changes * 50 < tiles * steps,
-            "{changes} of {tiles}"
-        );
-    }
-
-    #[test]
-    fn cascades_hold_the_scene_and_stay_while_the_eye_moves_a_little() {
-        let sun = LightUniform {
-            kind: 0,
-            direction: Vec3::new(0.3, -0.8, 0.2).normalize().to_array(),
-            ..lamp(0.0, 0.0)
-        };
-        let plan = |x| Plan::new(&[sun], &view_from(x, 1.0, 9.0), &room(), 12).wanted;
-        let wanted = plan(0.0);
-        assert_eq!(wanted.len(), CASCADES);
-        let last = wanted[CASCADES - 1].volume.clip_from_world(1024.0);
-        for corner in room().corners() {
-            let clip = last * corner.extend(1.0);
-            assert!(clip.truncate().truncate().abs().max_element() < 1.0);
-            assert!(clip.z > 0.0 && clip.z < 1.0);
-        }
-        let moves = (0..100).filter(|&i| plan(i as f32 * 1e-3) != plan((i + 1) as f32 * 1e-3));
-        assert!(moves.count() <= 3);
-    }
-}
+mod tests;

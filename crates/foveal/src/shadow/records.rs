@@ -49,6 +49,12 @@ impl LookupSettings {
         }
     }
 
+    /// Texels by which a lookup may reach beside its place, in any direction, where no lamp's size
+    /// makes it reach farther: as the place is moved, and as its filter reads to both sides.
+    pub(super) fn beside(&self) -> f32 {
+        MOST_MOVED * self.texels_moved + std::f32::consts::SQRT_2 * SOFT_REACH
+    }
+
     /// Texels that a lookup reads beside the place that it is asked for.
     pub(super) fn reach(&self) -> f32 {
         match self.shadows {
@@ -60,6 +66,9 @@ impl LookupSettings {
 
 /// Texels that filters of one width reach, with what is blended.
 const SOFT_REACH: f32 = 3.0;
+/// As `shadow_offset` in `shadow/lookup.wgsl`: places are moved by up to so many texels, times the
+/// bias.
+pub(super) const MOST_MOVED: f32 = 1.4;
 /// As in `shadow/contact.wgsl`.
 pub(super) const CONTACT_REACH: f32 = 12.0;
 

@@ -2,23 +2,22 @@
 
 use std::cmp::Reverse;
 
-use foveal_scene::{Aabb, AlphaMode};
-use glam::Vec3;
+use foveal_scene::Aabb;
 
 use super::atlas::Tile;
 use super::changed::{Place, changed_places};
 use super::hidden::HiddenCasters;
 use super::kept::{KeptTiles, Received, Urgency};
+use super::near::{Near, NearLight, Seen};
 use super::pass::{CasterPass, TileDraw};
 use super::plan::{Plan, TILES_PER_LIGHT, ViewOfPlan, Wanted};
-use super::receivers::{NearCells, Reach, Receivers, SeenCells, SeenSince};
+use super::receivers::{Reach, Receivers, SeenCells, SeenSince};
 use super::records::{LookupSettings, Row, rows};
-use super::volume::Volume;
 use crate::geometry::DrawList;
 use crate::gpu::{Gpu, Table};
 use crate::rate::FinestRate;
 use crate::recorder::Recorder;
-use crate::scene::{DrawnInstance, SceneOnGpu};
+use crate::scene::SceneOnGpu;
 use crate::stereo::Eye;
 use crate::{Settings, ShadowSizes, ShadowStats, Shadows};
 
@@ -155,6 +154,7 @@ impl ShadowStage {
         if let Some(drawing) = &mut self.drawing {
             drawing.kept.forget();
             drawing.seen = SeenSince::default();
+            drawing.plan = Plan::default();
             drawing.settled = None;
         }
     }
@@ -182,11 +182,18 @@ impl ShadowStage {
             return Vec::new();
         }
         let kept = &drawing.kept;
-        let lamps = drawing.lookup.lamps();
-        changed_places(&scene.lights, lamps, boxes, &scene.bounds, |light| {
-            let first = (light * TILES_PER_LIGHT) as u32;
-            kept.has_any(first..first + TILES_PER_LIGHT as u32)
-        })
+        let lookup = &drawing.lookup;
+        changed_places(
+            &scene.lights,
+            lookup.lamps(),
+            boxes,
+            &scene.bounds,
+            |light| {
+                let first = (light * TILES_PER_LIGHT) as u32;
+                let texel = kept.widest_texel(first..first + TILES_PER_LIGHT as u32)?;
+                Some(lookup.beside() * texel)
+            },
+        )
     }
 
     /// Decides what the frame draws, and tells shaders where tiles lie. `receivers`: what
@@ -218,6 +225,8 @@ impl ShadowStage {
                 self.written = rows;
             }
             drawing.settled = Some(now).filter(|_| drawing.counts.waiting == 0);
+        } else {
+            drawing.kept.rest();
         }
         self.stats = Some(drawing.stats());
         std::mem::take(&mut drawing.changed)
@@ -243,24 +252,6 @@ impl ShadowStage {
     }
 }
 
-/// A light's own lamp is no larger than this part of its range.
-const LARGEST_LAMP: f32 = 0.5;
-
-/// Whether an instance keeps a light, given by its place and range, from what is beyond. What
-/// glows, is small, and holds the light within its box is the light's own lamp.
-fn casts(scene: &SceneOnGpu, instance: &DrawnInstance, light: Option<(Vec3, f32)>) -> bool {
-    let b = &instance.bounds;
-    let has_triangles = scene.geometry.mesh(instance.mesh).index_count > 0;
-    let is_own_lamp = instance.glows
-        && light.is_some_and(|(at, range)| {
-            at.cmpge(b.min).all()
-                && at.cmple(b.max).all()
-                && b.size().length() <= LARGEST_LAMP * range
-        });
-    let is_shown = has_triangles && instance.visible;
-    is_shown && instance.alpha_mode != AlphaMode::Blend && b.is_valid() && !is_own_lamp
-}
-
 fn light_of(want: &Wanted) -> u32 {
     want.slot / TILES_PER_LIGHT as u32
 }
@@ -268,66 +259,15 @@ fn light_of(want: &Wanted) -> u32 {
 /// Frames after which a tile that is drawn again forgets what only earlier ones saw.
 pub(super) const MOST_FRAMES: u64 = 60;
 
-/// What a frame sees.
-#[derive(Clone, Copy, Debug)]
-enum Seen<'a> {
-    Instances(&'a [u32]),
-    Cells(SeenCells<'a>),
-}
-
-/// What a frame sees within a light's reach.
-enum Near<'a> {
-    Instances(Vec<&'a Aabb>),
-    Cells(NearCells<'a>),
-}
-
-impl<'a> Seen<'a> {
-    fn near(self, scene: &'a SceneOnGpu, reach: Reach) -> Near<'a> {
-        match self {
-            Self::Instances(instances) => {
-                let boxes = instances.iter();
-                let boxes = boxes.map(|&i| &scene.instances[i as usize].bounds);
-                Near::Instances(boxes.filter(|b| reach.meets(b)).collect())
-            }
-            Self::Cells(cells) => Near::Cells(cells.near(reach)),
-        }
-    }
-}
-
-/// A light of which tiles are missing.
-struct NearLight<'a> {
-    reach: Reach,
-    near: Near<'a>,
-    /// Instances within its reach, once they are asked for.
-    casters: Option<Vec<u32>>,
-}
-
-impl<'a> NearLight<'a> {
-    /// The light of these tiles.
-    fn new(scene: &'a SceneOnGpu, receivers: Seen<'a>, wanted: &[Wanted]) -> Self {
-        let reach = Reach::of(wanted);
-        Self {
-            reach,
-            near: receivers.near(scene, reach),
-            casters: None,
-        }
-    }
-}
-
-impl Near<'_> {
-    /// Whether a tile of `side` texels sees any of it.
-    fn meets(&self, volume: &Volume, side: f32) -> bool {
-        match self {
-            Self::Instances(boxes) => boxes.iter().any(|b| volume.meets(b, side)),
-            Self::Cells(cells) => cells.meets(volume, side),
-        }
-    }
-}
-
 impl Drawing {
     /// Finds the frame's tiles, and lists the draws of those that are seen and not there.
     fn find_tiles(&mut self, scene: &SceneOnGpu, now: &Settled) {
-        self.plan = Plan::new(&scene.lights, &now.view, &scene.bounds, self.atlas_level);
+        let plan = Plan::new(&scene.lights, &now.view, &scene.bounds, self.atlas_level);
+        // Light that was kept is wrong where a tile has lost or found room.
+        let lost = plan.left_out_of(&self.plan.wanted);
+        let found = self.plan.left_out_of(&plan.wanted);
+        (self.changed).extend(lost.chain(found).map(|want| want.volume.sphere()));
+        self.plan = plan;
         self.kept.place(&self.plan.wanted, now.keeps_sizes);
         self.frame += 1;
         let boxes = scene.culling.cells();
@@ -434,14 +374,7 @@ impl Drawing {
         };
         let (tile, volume) = (kept.tile, &want.volume);
         let side = tile.side() as f32;
-        let reach = light.reach;
-        let casters = light.casters.get_or_insert_with(|| {
-            (0..)
-                .zip(&scene.instances)
-                .filter(|(_, i)| casts(scene, i, reach.sphere) && reach.meets(&i.bounds))
-                .map(|(number, _)| number)
-                .collect()
-        });
+        let casters = light.casters(scene);
         let is_cast = |i: &u32| volume.resolves(bounds(*i), side) && volume.meets(bounds(*i), side);
         let mut casters: Vec<u32> = casters.iter().copied().filter(is_cast).collect();
         self.counts.in_reach += casters.len() as u64;
@@ -503,7 +436,7 @@ impl Drawing {
             tiles_waiting: self.counts.waiting,
             longest_wait: self.counts.longest_wait,
             atlas_bytes: 4 << (2 * self.atlas_level),
-            lights_left_out: u64::from(self.plan.lights_left_out),
+            lights_left_out: self.plan.lights_left_out() as u64,
             shrunk_by: self.plan.shrunk_by,
         }
     }

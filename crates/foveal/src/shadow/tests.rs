@@ -55,7 +55,7 @@ pub(super) fn lookup(renderer: &Renderer) -> Lookup {
 pub(super) struct Seen {
     /// Column and row.
     at: [u32; 2],
-    radiance: Vec3,
+    pub(super) radiance: Vec3,
     pub(super) surface: crate::shading::twin::Surface,
 }
 

@@ -42,20 +42,17 @@ pub(super) fn widening(side: f32) -> f32 {
 
 impl Volume {
     /// Whether depths that were drawn for `held` can be looked up for this one: the light is as it
-    /// was. A cascade may have moved with the eye.
+    /// was, and so is the scene along its rays. A cascade may have moved and grown with the eye.
     pub(super) fn can_look_into(&self, held: &Self) -> bool {
         match (*self, *held) {
             (
-                Self::Column {
-                    axes, radius, span, ..
-                },
+                Self::Column { axes, span, .. },
                 Self::Column {
                     axes: axes_held,
-                    radius: radius_held,
                     span: span_held,
                     ..
                 },
-            ) => axes == axes_held && radius == radius_held && span == span_held,
+            ) => axes == axes_held && span == span_held,
             (now, held) => now == held,
         }
     }
