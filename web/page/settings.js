@@ -1,5 +1,5 @@
 // Both sides' settings: defaults from the renderer, changes by the page, and the link that holds them.
-// In a link, `left.` and `right.` stand before the settings that are not the default.
+// In a link, `left.` and `right.` stand before the settings that are not the default, or that the technique changes.
 
 const SIDES = { reference: 'left', chosen: 'right' };
 
@@ -8,7 +8,7 @@ export class Settings {
   constructor(defaults, table) {
     this.defaults = defaults;
     this.table = table;
-    this.sides = { reference: { ...defaults }, chosen: { ...defaults } };
+    this.use({});
   }
 
   entry(key) {
@@ -16,8 +16,11 @@ export class Settings {
   }
 
   use(technique) {
-    this.sides.reference = { ...this.defaults, ...technique.reference };
-    this.sides.chosen = { ...this.defaults, ...technique.chosen };
+    this.technique = technique;
+    this.sides = {
+      reference: { ...this.defaults, ...technique.reference },
+      chosen: { ...this.defaults, ...technique.chosen },
+    };
   }
 
   set(side, key, value) {
@@ -28,11 +31,12 @@ export class Settings {
     return JSON.stringify(this.sides[side][key]) !== JSON.stringify(this.defaults[key]);
   }
 
-  /** Adds what is not the default to a link's parameters. */
+  /** Adds what is not the default, and what the technique changes, to a link's parameters. */
   write(link) {
     for (const [side, short] of Object.entries(SIDES)) {
       for (const { key } of this.table) {
-        if (this.changed(side, key)) link.set(`${short}.${key}`, String(this.sides[side][key]));
+        const isOfTechnique = this.technique[side]?.[key] !== undefined;
+        if (isOfTechnique || this.changed(side, key)) link.set(`${short}.${key}`, String(this.sides[side][key]));
       }
     }
   }
