@@ -21,7 +21,8 @@ export function writeLinkNow() {
   page.settings.write(link);
   link.set('split', page.split.toFixed(3));
   if (page.scale !== 'auto') link.set('scale', page.scale);
-  if (page.camera.touched) {
+  // A link cannot hold a file, nor a place that means something in a file alone.
+  if (page.camera.touched && !page.scene.bytes) {
     const { eye, target } = page.camera.place();
     link.set('eye', eye.map((v) => v.toFixed(4)).join(','));
     link.set('target', target.map((v) => v.toFixed(4)).join(','));
