@@ -37,14 +37,17 @@ function cell(name, text, kind) {
 
 const COLOUR_OF_FINDING = { faster: 'better', slower: 'worse' };
 
-/** Reference / chosen: above 1 the chosen side takes less. Times have a colour where many frames differ. */
-function ratioCell(compare, left, right, found) {
-  if (compare === 'count') {
-    const ratio = left > 0 && right > 0 ? left / right : undefined;
-    return cell('td', ratio === undefined ? '' : `${ratio.toFixed(2)}x`, ratio > 1 ? 'better' : '');
-  }
-  if (!compare || !(left > 0 && right > 0)) return cell('td', '');
+/**
+ * Reference / chosen: above 1 the chosen side takes less. Times have a colour where many frames differ. Figures that are not
+ * of one frame, `together`, may be of two views.
+ */
+function ratioCell(compare, left, right, { found, together }) {
   const told = found?.[compare];
+  if (!compare || !(left > 0 && right > 0) || !(together || told)) return cell('td', '');
+  if (compare === 'count') {
+    const ratio = left / right;
+    return cell('td', `${ratio.toFixed(2)}x`, ratio > 1 ? 'better' : '');
+  }
   const [, ratio, interval] = (told?.text ?? 'measuring').match(/^([^(]*)(\(.*)?$/);
   const made = cell('td', ratio, COLOUR_OF_FINDING[told?.finding] ?? 'grey');
   if (interval) made.append(cell('small', interval));
@@ -53,7 +56,7 @@ function ratioCell(compare, left, right, found) {
 }
 
 /** Fills the table; a side that was not drawn keeps its last figures. */
-export function showFigures(table, passes, notices, { reference, chosen, found }) {
+export function showFigures(table, passes, notices, { reference, chosen, ...compared }) {
   const body = table.tBodies[0];
   body.replaceChildren();
   for (const [name, pick, write, compare] of rows) {
@@ -62,7 +65,7 @@ export function showFigures(table, passes, notices, { reference, chosen, found }
     const row = body.insertRow();
     row.append(cell('th', name));
     for (const value of [left, right]) row.append(cell('td', value === undefined ? '–' : write(value)));
-    row.append(ratioCell(compare, left, right, found));
+    row.append(ratioCell(compare, left, right, compared));
   }
   showPasses(passes, reference, chosen);
   notices.textContent = noticesOf(chosen).join(' ');

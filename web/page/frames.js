@@ -41,8 +41,12 @@ async function drawFrame() {
   page.frames += 1;
   page.firstFrameMs ??= performance.now();
   page.drawn = { reference: cost.reference, chosen: cost.chosen };
-  const found = { frame: cost.frame, passes: cost.passes };
-  page.costs = { reference: cost.reference ?? page.costs.reference, chosen: cost.chosen ?? page.costs.chosen, found };
+  page.costs = {
+    reference: cost.reference ?? page.costs.reference,
+    chosen: cost.chosen ?? page.costs.chosen,
+    found: { frame: cost.frame, passes: cost.passes },
+    together: Boolean(cost.reference && cost.chosen),
+  };
   page.measured = cost.is_measured;
   showFigures($('figures'), $('passes'), $('notices'), page.costs);
   showFooting($('footing'), page.firstFrameMs, page.memory.buffer.byteLength);

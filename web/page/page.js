@@ -42,12 +42,19 @@ export const page = {
   loads: 0,
   // The scene that was shown when it stopped last.
   stoppedAt: null,
-  costs: { reference: null, chosen: null, found: null },
+  // What each side cost when it was drawn last, `together` in one frame; how they compare is `found`.
+  costs: {},
   // What the last frame cost, of each side that it drew.
-  drawn: { reference: null, chosen: null },
+  drawn: {},
   // Whether more frames can tell nothing more of the two sides.
   measured: false,
 };
+
+/** No figures are left of a scene that is shown no more. */
+export function forgetCosts() {
+  page.costs = {};
+  page.drawn = {};
+}
 
 export function redraw() {
   page.stale = true;

@@ -2,7 +2,7 @@
 
 import { tellSettings } from './chooser.js';
 import { writeLink } from './link.js';
-import { $, alone, page, printable, redraw, say, wait } from './page.js';
+import { $, alone, forgetCosts, page, printable, redraw, say, wait } from './page.js';
 import { hasStopped, orStopped, rehearse } from './renderer.js';
 
 const SCENES = ['demo', 'cornell', 'materials-grid', 'alpha', 'demo:1000'];
@@ -28,6 +28,7 @@ export async function showScene(scene, place) {
       : page.viewer.generate(scene.name));
     const shown = JSON.parse(text);
     page.scene = scene;
+    forgetCosts();
     page.home = { place: shown.camera, radius: shown.radius_m };
     page.camera.reset({ ...shown.camera, ...place }, shown.radius_m);
     page.camera.touched = Boolean(place);

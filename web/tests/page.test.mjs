@@ -187,6 +187,29 @@ test('the divider moves by keyboard and by dragging, and hides what it covers', 
   await page.context().close();
 });
 
+test('a side that is hidden has no figures of another scene, and no ratio to another view', async () => {
+  const { page, said } = await site.visit('#scene=cornell&technique=culling&scale=0.25', SMALL);
+  const [reference, ratio] = [1, 3];
+  const triangles = (column) => page.locator('#figures tbody tr').evaluateAll((all, c) => all.find((row) => row.cells[0].textContent === 'Triangles').cells[c].textContent, column);
+  await settled(page);
+  assert.match(await triangles(ratio), /x$/);
+  await page.locator('#split').focus();
+  await page.keyboard.press('Home');
+  await settled(page);
+  // What the side cost when it was drawn last.
+  assert.match(await triangles(reference), /\d/);
+  await page.locator('#picture').focus();
+  await page.keyboard.press('ArrowLeft');
+  await settled(page);
+  assert.equal(await triangles(ratio), '');
+  await page.locator('#scene').selectOption('demo:1000');
+  await page.waitForFunction(() => window.foveal.scene.name === 'demo:1000');
+  await settled(page);
+  assert.deepEqual([await triangles(reference), await triangles(ratio)], ['–', '']);
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
 test('looking around by mouse and keys changes the picture, and home brings it back', async () => {
   const { page } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
   const first = await picture(page);
