@@ -94,7 +94,7 @@ async function mend(cause) {
 async function restart(cause, whileDrawing = false) {
   if (!hasStopped(cause)) return say(String(cause));
   say(`The renderer stopped (${cause.message}) and was started again`);
-  let place = page.camera.place();
+  let place = page.home && page.camera.place();
   // It may be the scene itself that cannot be drawn.
   if (whileDrawing && page.stoppedAt === page.scene) {
     if (page.scene.name === 'demo') return say(`The renderer stopped again (${cause.message}). Reload the page to try again.`);

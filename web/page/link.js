@@ -11,9 +11,14 @@ export function writeLink() {
   waits ??= setTimeout(writeLinkNow, LEAST_WAIT_MS);
 }
 
-export function writeLinkNow() {
+/** Leaves the address as it is until the next change. */
+export function keepLink() {
   clearTimeout(waits);
   waits = null;
+}
+
+export function writeLinkNow() {
+  keepLink();
   const link = new URLSearchParams();
   if (page.reducedOnPurpose) link.set('backend', 'webgl2');
   if (!page.scene.bytes) link.set('scene', page.scene.name);
@@ -34,9 +39,14 @@ export function writeLinkNow() {
   }
 }
 
-/** Takes over the address's settings; tells which place it names for the camera. */
-export function readLink() {
-  const link = new URLSearchParams(location.hash.slice(1));
+/** Whether an address asks for the reduced renderer. */
+export function asksForReduced(address) {
+  return new URLSearchParams(address.slice(1)).get('backend') === 'webgl2';
+}
+
+/** Takes over an address's settings; tells which scene it names, and which place in it for the camera. */
+export function readLink(address) {
+  const link = new URLSearchParams(address.slice(1));
   const technique = page.techniques.find((t) => t.key === link.get('technique'));
   page.technique = technique ?? page.techniques[0];
   page.settings.use(page.technique);
@@ -44,11 +54,11 @@ export function readLink() {
   const split = Number(link.get('split') ?? 0.5);
   page.split = split >= 0 && split <= 1 ? split : 0.5;
   const scale = link.get('scale');
-  if ([...$('scale').options].some((o) => o.value === scale)) page.scale = scale;
-  page.scene = { name: link.get('scene') ?? 'demo', bytes: null };
+  page.scale = [...$('scale').options].some((o) => o.value === scale) ? scale : 'auto';
+  const scene = { name: link.get('scene') ?? 'demo', bytes: null };
   const numbers = (key) => link.get(key)?.split(',').map(Number);
   const [eye, target] = [numbers('eye'), numbers('target')];
   const place = [eye, target].every((p) => p?.length === 3 && p.every(Number.isFinite)) ? { eye, target } : null;
   if (unread.length) say(`The link asks for what this page does not know: ${unread.join(', ')}`);
-  return place;
+  return { scene, place };
 }

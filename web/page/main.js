@@ -3,8 +3,8 @@
 import { showTechnique, wireChooser } from './chooser.js';
 import { placeSplit, wireControls } from './controls.js';
 import { openViewer, turn } from './frames.js';
-import { readLink } from './link.js';
-import { $, page } from './page.js';
+import { asksForReduced, keepLink, readLink, writeLink } from './link.js';
+import { $, alone, page } from './page.js';
 import { loadRenderer } from './renderer.js';
 import { showScene, wireScenes } from './scenes.js';
 import { Settings } from './settings.js';
@@ -27,7 +27,7 @@ async function begin(reduced) {
 
 /** The best that this browser can do; `null` where it can draw nothing. */
 async function beginSomehow() {
-  page.reducedOnPurpose = new URLSearchParams(location.hash.slice(1)).get('backend') === 'webgl2';
+  page.reducedOnPurpose = asksForReduced(location.hash);
   const causes = [];
   for (const reduced of page.reducedOnPurpose ? [true] : [false, true]) {
     try {
@@ -51,6 +51,35 @@ function showReduced(causes) {
   $('reduced').hidden = false;
 }
 
+/** Shows what an address asks for; tells whether its scene is shown. */
+function showLink(address) {
+  const { scene, place } = readLink(address);
+  $('scale').value = page.scale;
+  placeSplit();
+  showTechnique(page.technique);
+  // It stays the address while its scene is loaded.
+  keepLink();
+  return showScene(scene, place).catch((cause) => page.restart(cause));
+}
+
+/** Follows addresses that the open page is given: by hand, or by the way back. Those that it writes itself tell nobody. */
+function followLinks() {
+  let last = null;
+  addEventListener('hashchange', ({ newURL }) => {
+    const address = new URL(newURL).hash;
+    if (!address) return;
+    last = address;
+    if (asksForReduced(address) !== page.reducedOnPurpose) {
+      history.replaceState(null, '', address);
+      location.reload();
+      return;
+    }
+    alone(async () => {
+      if (address === last && !(await showLink(address))) writeLink();
+    });
+  });
+}
+
 async function main() {
   const renderer = await beginSomehow();
   if (!renderer) return;
@@ -58,16 +87,11 @@ async function main() {
   wireScenes();
   wireChooser();
   wireControls();
-  const place = readLink();
-  $('scale').value = page.scale;
-  placeSplit();
-  const address = location.hash;
-  showTechnique(page.technique);
-  history.replaceState(null, '', address || '#');
-  const isShown = await showScene(page.scene, place).catch((cause) => page.restart(cause));
-  if (!isShown && !page.stoppedAt && page.scene.name !== 'demo') {
-    await showScene({ name: 'demo', bytes: null });
-  }
+  followLinks();
+  await alone(async () => {
+    await showLink(location.hash);
+    if (!page.home && !page.stoppedAt) await showScene({ name: 'demo', bytes: null });
+  });
   requestAnimationFrame(turn);
 }
 

@@ -31,3 +31,67 @@ test('a link names no place in a file that it cannot hold', async () => {
   assert.deepEqual(said, []);
   await page.context().close();
 });
+
+test('another address in the open page is followed, and the way back too', async () => {
+  const { page, said } = await site.visit('#scene=cornell&technique=culling&scale=0.25', SMALL);
+  await settled(page);
+  await page.evaluate(() => { window.foveal.scene.mark = true; });
+  await page.locator('#picture').focus();
+  await page.keyboard.press('ArrowLeft');
+  const own = await written(page);
+  assert.ok(own.has('eye'));
+  // What the page writes itself loads nothing.
+  assert.ok(await page.evaluate(() => window.foveal.scene.mark));
+  await page.evaluate(() => { location.hash = '#scene=demo:1000&technique=msaa&right.samples=9&split=0.25&eye=0,1,2&target=0,1,0'; });
+  await page.waitForFunction(() => window.foveal.scene.name === 'demo:1000');
+  const link = await written(page);
+  const { samples, split, eye, scale } = await page.evaluate(() => {
+    const { settings, camera, ...page } = window.foveal;
+    return { samples: settings.sides.chosen.samples, split: page.split, eye: camera.place().eye, scale: page.scale };
+  });
+  assert.deepEqual([samples, split, eye, scale], [9, 0.25, [0, 1, 2], 'auto']);
+  assert.deepEqual(['scene', 'right.samples', 'split', 'eye'].map((name) => link.get(name)), ['demo:1000', '9', '0.250', '0.0000,1.0000,2.0000']);
+  assert.equal(await page.locator('#techniques [aria-checked="true"]').getAttribute('data-key'), 'msaa');
+  assert.deepEqual([await page.locator('#scale').inputValue(), await page.locator('#split').inputValue()], ['auto', '250']);
+  await page.goBack();
+  await page.waitForFunction(() => window.foveal.scene.name === 'cornell');
+  assert.equal(String(await written(page)), String(own));
+  assert.equal(await page.evaluate(() => window.foveal.loads), 1);
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
+test('an address that names no scene of the page\'s keeps the scene, and says so', async () => {
+  const { page, said } = await site.visit('#scene=cornell&technique=culling&scale=0.25', SMALL);
+  await settled(page);
+  await page.evaluate(() => { location.hash = '#scene=nowhere&technique=msaa&scale=0.25'; });
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /nowhere/);
+  const link = await written(page);
+  assert.deepEqual([link.get('scene'), link.get('technique')], ['cornell', 'msaa']);
+  // An empty one asks for nothing.
+  await page.evaluate(() => { location.hash = ''; });
+  await page.locator('#picture').focus();
+  await page.keyboard.press('ArrowLeft');
+  assert.equal((await written(page)).get('technique'), 'msaa');
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
+test('a page that is opened with a scene that it does not have shows the demo scene', async () => {
+  const { page } = await site.visit('#scene=nowhere&technique=culling&scale=0.25', SMALL);
+  await page.waitForFunction(() => window.foveal.home);
+  assert.match(await page.locator('.message').textContent(), /nowhere/);
+  const link = await written(page);
+  assert.deepEqual([link.get('scene'), link.get('technique'), link.has('eye')], ['demo', 'culling', false]);
+  await page.context().close();
+});
+
+test('an address that asks for the reduced renderer loads it', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25', SMALL);
+  await settled(page);
+  await page.evaluate(() => { location.hash = '#backend=webgl2&scene=cornell&scale=0.25'; });
+  await page.waitForFunction(() => document.getElementById('adapter').textContent.includes('WebGL 2'));
+  assert.equal((await written(page)).get('backend'), 'webgl2');
+  await page.context().close();
+});
