@@ -2,6 +2,11 @@
 
 const STEP_RAD = 0.04;
 
+/** Radians that are none: what numbers of 32 bits and of links are rounded by. */
+const NONE_RAD = 1e-4;
+
+const dot = (a, b) => a.reduce((sum, v, i) => sum + v * b[i], 0);
+
 export class Camera {
   /** `moved()` is called after each change. */
   constructor(canvas, moved) {
@@ -13,15 +18,27 @@ export class Camera {
     this.listen(canvas);
   }
 
+  /** `place` may lack `up`: then nothing leans. */
   reset(place, radius) {
     this.eye = [...place.eye];
     this.fov = place.fov_y_deg;
     this.near = place.near_m;
     const forward = place.target.map((t, i) => t - place.eye[i]);
     this.distance = Math.hypot(...forward) || 1;
-    this.yaw = Math.atan2(forward[0], -forward[2]);
-    this.pitch = Math.asin(forward[1] / this.distance);
+    this.face(forward, place.up ?? [0, 1, 0]);
     this.pace = radius / 60;
+  }
+
+  /** Looks along `forward`, with `up` upwards in the picture. */
+  face(forward, up) {
+    const level = Math.hypot(forward[0], forward[2]);
+    // Straight down `up` alone says which way is ahead, straight up its opposite does.
+    const ahead = level > NONE_RAD * this.distance ? forward : up.map((v) => -Math.sign(forward[1]) * v);
+    this.yaw = Math.atan2(ahead[0], 0 - ahead[2]);
+    this.pitch = Math.atan2(forward[1], level);
+    this.roll = 0;
+    const roll = Math.atan2(dot(up, this.right), dot(up, this.up));
+    if (Math.abs(roll) > NONE_RAD) this.roll = roll;
   }
 
   get forward() {
@@ -29,22 +46,46 @@ export class Camera {
     return [Math.sin(this.yaw) * level, Math.sin(this.pitch), -Math.cos(this.yaw) * level];
   }
 
-  place() {
-    const target = this.eye.map((e, i) => e + this.forward[i] * this.distance);
-    return { eye: this.eye, target, fov_y_deg: this.fov, near_m: this.near };
+  /** To the right in the picture, before it leans by `roll` to the right. */
+  get level() {
+    return [Math.cos(this.yaw), 0, Math.sin(this.yaw)];
   }
 
+  /** Upwards in the picture, before it leans. */
+  get upright() {
+    const steep = Math.sin(this.pitch);
+    return [-Math.sin(this.yaw) * steep, Math.cos(this.pitch), Math.cos(this.yaw) * steep];
+  }
+
+  get right() {
+    return this.lean(this.level, this.upright, -1);
+  }
+
+  get up() {
+    return this.lean(this.upright, this.level, 1);
+  }
+
+  lean(axis, other, sign) {
+    return axis.map((v, i) => v * Math.cos(this.roll) + sign * other[i] * Math.sin(this.roll));
+  }
+
+  place() {
+    const target = this.eye.map((e, i) => e + this.forward[i] * this.distance);
+    return { eye: this.eye, target, up: this.up, fov_y_deg: this.fov, near_m: this.near };
+  }
+
+  /** Turns to the right and upwards in the picture, by radians. */
   turn(right, up) {
     const pivot = this.eye.map((e, i) => e + this.forward[i] * this.distance);
-    this.yaw += right;
-    this.pitch = Math.max(-1.5, Math.min(1.5, this.pitch + up));
+    const [cos, sin] = [Math.cos(this.roll), Math.sin(this.roll)];
+    this.yaw += right * cos + up * sin;
+    this.pitch = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, this.pitch + up * cos - right * sin));
     if (this.orbit) this.eye = pivot.map((p, i) => p - this.forward[i] * this.distance);
     this.moved();
   }
 
   move(right, up, ahead) {
-    const side = [Math.cos(this.yaw), 0, Math.sin(this.yaw)];
-    const f = this.forward;
+    const [side, f] = [this.right, this.forward];
     if (this.orbit && ahead) {
       const distance = Math.max(this.pace * 0.05, this.distance - ahead);
       ahead = this.distance - distance;

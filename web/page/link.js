@@ -6,6 +6,9 @@ import { $, page, say } from './page.js';
 const LEAST_WAIT_MS = 500;
 let waits = null;
 
+/** What a link says of the camera; without `up` it does not lean. */
+const PLACE = ['eye', 'target', 'up'];
+
 /** Writes the link soon, once for all changes until then. */
 export function writeLink() {
   waits ??= setTimeout(writeLinkNow, LEAST_WAIT_MS);
@@ -28,9 +31,8 @@ export function writeLinkNow() {
   if (page.scale !== 'auto') link.set('scale', page.scale);
   // A link cannot hold a file, nor a place that means something in a file alone.
   if (page.camera.touched && !page.scene.bytes) {
-    const { eye, target } = page.camera.place();
-    link.set('eye', eye.map((v) => v.toFixed(4)).join(','));
-    link.set('target', target.map((v) => v.toFixed(4)).join(','));
+    const place = page.camera.place();
+    for (const key of PLACE) link.set(key, place[key].map((v) => v.toFixed(4)).join(','));
   }
   try {
     history.replaceState(null, '', `#${link}`);
@@ -42,6 +44,12 @@ export function writeLinkNow() {
 /** Whether an address asks for the reduced renderer. */
 export function asksForReduced(address) {
   return new URLSearchParams(address.slice(1)).get('backend') === 'webgl2';
+}
+
+/** Three numbers as a link has them, or nothing. */
+function vector(text) {
+  const numbers = text?.split(',').map(Number);
+  return numbers?.length === 3 && numbers.every(Number.isFinite) ? numbers : undefined;
 }
 
 /** Takes over an address's settings; tells which scene it names, and which place in it for the camera. */
@@ -56,9 +64,8 @@ export function readLink(address) {
   const scale = link.get('scale');
   page.scale = [...$('scale').options].some((o) => o.value === scale) ? scale : 'auto';
   const scene = { name: link.get('scene') ?? 'demo', bytes: null };
-  const numbers = (key) => link.get(key)?.split(',').map(Number);
-  const [eye, target] = [numbers('eye'), numbers('target')];
-  const place = [eye, target].every((p) => p?.length === 3 && p.every(Number.isFinite)) ? { eye, target } : null;
+  const [eye, target, up] = PLACE.map((key) => vector(link.get(key)));
+  const place = eye && target ? { eye, target, up } : null;
   if (unread.length) say(`The link asks for what this page does not know: ${unread.join(', ')}`);
   return { scene, place };
 }

@@ -2,8 +2,9 @@
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { open, settled } from './browser.mjs';
+import { open, picture, settled } from './browser.mjs';
 import { drop, triangle } from './files.mjs';
+import { difference } from './native.mjs';
 
 const SMALL = { width: 600, height: 300 };
 
@@ -94,4 +95,21 @@ test('an address that asks for the reduced renderer loads it', async () => {
   await page.waitForFunction(() => document.getElementById('adapter').textContent.includes('WebGL 2'));
   assert.equal((await written(page)).get('backend'), 'webgl2');
   await page.context().close();
+});
+
+test('a link holds which way is up where the camera looks straight down', async () => {
+  const pictures = [];
+  for (const up of ['0.6000,0.0000,0.8000', '-0.6000,0.0000,-0.8000']) {
+    const { page, said } = await site.visit(`#scene=cornell&technique=culling&scale=0.25&eye=0,0.9,0&target=0,0,0&up=${up}`, SMALL);
+    pictures.push(await picture(page));
+    const link = await written(page);
+    assert.deepEqual(['target', 'up'].map((name) => link.get(name).replaceAll('-0.0000', '0.0000')), ['0.0000,0.0000,0.0000', up]);
+    assert.deepEqual(said, []);
+    await page.context().close();
+  }
+  // Half a turn apart.
+  const [first, second] = pictures;
+  const turned = { ...first, bytes: Buffer.from(new Uint32Array(new Uint8Array(first.bytes).buffer).reverse().buffer) };
+  assert.ok(difference(first, second) > 10, `${difference(first, second)}`);
+  assert.ok(difference(turned, second) < 1, `${difference(turned, second)}`);
 });

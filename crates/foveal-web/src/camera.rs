@@ -4,13 +4,15 @@ use foveal_scene::{Camera, Projection};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// A perspective view, y up.
+/// A perspective view.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub(crate) struct Place {
     /// The eye in metres.
     eye: [f32; 3],
     /// What it looks at.
     target: [f32; 3],
+    /// What lies upwards in the picture; need not be at a right angle to the view.
+    up: [f32; 3],
     /// Full vertical field of view in degrees.
     fov_y_deg: f32,
     /// Distance of the near plane in metres.
@@ -27,7 +29,7 @@ const NEAR_BY_DISTANCE: f32 = 0.002;
 impl Place {
     /// The camera, or why there is none.
     pub(crate) fn camera(&self) -> Result<Camera, String> {
-        let numbers = self.eye.iter().chain(&self.target);
+        let numbers = self.eye.iter().chain(&self.target).chain(&self.up);
         if !numbers.copied().all(f32::is_finite) {
             return Err("the camera's place is not finite".to_owned());
         }
@@ -38,7 +40,12 @@ impl Place {
             return Err(format!("a near plane at {} m", self.near_m));
         }
         let fov_y_rad = self.fov_y_deg.to_radians();
-        let camera = Camera::look_at(self.eye.into(), self.target.into(), Vec3::Y, fov_y_rad);
+        let camera = Camera::look_at(
+            self.eye.into(),
+            self.target.into(),
+            self.up.into(),
+            fov_y_rad,
+        );
         Ok(Camera {
             projection: Projection::Perspective {
                 fov_y_rad,
@@ -62,6 +69,7 @@ impl Place {
         Self {
             eye: camera.eye().to_array(),
             target: (camera.eye() + distance_m * forward).to_array(),
+            up: camera.world_from_view.y_axis.truncate().to_array(),
             fov_y_deg: fov_y_rad
                 .to_degrees()
                 .clamp(*FOV_Y_DEG.start(), *FOV_Y_DEG.end()),
@@ -74,20 +82,40 @@ impl Place {
 mod tests {
     use super::*;
 
-    /// What the page draws of a scene's camera that looks at the origin.
-    fn drawn(projection: Projection) -> Camera {
-        let eye = Vec3::new(0.0, 0.0, 0.04);
-        let of_scene = Camera {
-            projection,
-            ..Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 1.0)
-        };
-        let text = serde_json::to_string(&Place::of(&of_scene, 0.04)).unwrap();
+    /// What the page draws of a scene's camera.
+    fn drawn(of_scene: &Camera) -> Camera {
+        let text = serde_json::to_string(&Place::of(of_scene, 0.04)).unwrap();
         let place: Place = serde_json::from_str(&text).unwrap();
         let camera = place.camera().unwrap();
         assert!(
-            (camera.world_from_view - of_scene.world_from_view).abs_diff_eq(glam::Mat4::ZERO, 1e-6)
+            (camera.world_from_view - of_scene.world_from_view).abs_diff_eq(glam::Mat4::ZERO, 1e-6),
+            "{} became {}",
+            of_scene.world_from_view,
+            camera.world_from_view
         );
         camera
+    }
+
+    /// A camera 4 cm in front of the origin that looks at it.
+    fn in_front(projection: Projection) -> Camera {
+        let eye = Vec3::new(0.0, 0.0, 0.04);
+        Camera {
+            projection,
+            ..Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 1.0)
+        }
+    }
+
+    #[test]
+    fn cameras_that_look_straight_down_or_lean_stay_as_they_are() {
+        for (eye, up) in [
+            (Vec3::Y, Vec3::X),
+            (Vec3::Y, Vec3::new(0.6, 0.0, 0.8)),
+            (Vec3::NEG_Y, Vec3::Z),
+            (Vec3::Z, Vec3::X),
+            (Vec3::new(0.5, 0.7, -1.0), Vec3::new(0.3, -1.0, 0.2)),
+        ] {
+            drawn(&Camera::look_at(0.04 * eye, Vec3::ZERO, up, 1.0));
+        }
     }
 
     #[test]
@@ -103,7 +131,7 @@ mod tests {
                 far_m: 0.1,
             },
         ] {
-            let clip_from_world = drawn(projection).clip_from_world(1.0);
+            let clip_from_world = drawn(&in_front(projection)).clip_from_world(1.0);
             // The front of an object of 2 cm.
             let depth = clip_from_world.project_point3(Vec3::Z * 0.01).z;
             assert!((0.0..1.0).contains(&depth), "{projection:?}: {depth}");
@@ -113,11 +141,12 @@ mod tests {
     #[test]
     fn any_field_of_view_of_a_file_is_drawn_nearly_so() {
         for (of_file, most_near) in [(0.1f32, 1.0f32), (60.0, 60.0), (179.0, 170.0)] {
-            let Projection::Perspective { fov_y_rad, near_m } = drawn(Projection::Perspective {
-                fov_y_rad: of_file.to_radians(),
-                near_m: 0.3,
-            })
-            .projection
+            let Projection::Perspective { fov_y_rad, near_m } =
+                drawn(&in_front(Projection::Perspective {
+                    fov_y_rad: of_file.to_radians(),
+                    near_m: 0.3,
+                }))
+                .projection
             else {
                 panic!("the page draws perspectives")
             };
@@ -131,6 +160,7 @@ mod tests {
         let place = Place {
             eye: [0.0; 3],
             target: [0.0, 0.0, -1.0],
+            up: [0.0, 1.0, 0.0],
             fov_y_deg: 60.0,
             near_m: 0.1,
         };
@@ -144,5 +174,7 @@ mod tests {
                 "{fov_y_deg}"
             );
         }
+        let up = [0.0, f32::NAN, 0.0];
+        assert!(Place { up, ..place }.camera().is_err());
     }
 }
