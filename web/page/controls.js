@@ -2,6 +2,7 @@
 
 import { writeLink, writeLinkNow } from './link.js';
 import { $, alone, page, redraw } from './page.js';
+import { orLost } from './renderer.js';
 
 export function placeSplit() {
   $('handle').style.left = `${100 * page.split}%`;
@@ -22,7 +23,7 @@ async function savePicture() {
   const { chosen, reference } = page.drawn;
   const cost = chosen ?? reference;
   if (!cost) return;
-  const pixels = new Uint8ClampedArray(await page.viewer.picture(cost === chosen));
+  const pixels = new Uint8ClampedArray(await orLost(() => page.viewer.picture(cost === chosen)));
   const { width, height } = cost;
   const canvas = new OffscreenCanvas(width, height);
   canvas.getContext('2d').putImageData(new ImageData(pixels, width, height), 0, 0);
@@ -31,6 +32,14 @@ async function savePicture() {
   link.download = 'foveal.png';
   link.click();
   URL.revokeObjectURL(link.href);
+}
+
+/** Saves when nothing else is at work; says what failed. A lost device is opened again by the next frame. */
+function saveAlone() {
+  return alone(() => savePicture().catch((cause) => {
+    redraw();
+    return page.restart(cause);
+  }));
 }
 
 function goHome() {
@@ -71,7 +80,7 @@ export function wireControls() {
   $('orbit').addEventListener('change', (event) => { page.camera.orbit = event.target.checked; });
   $('home').addEventListener('click', goHome);
   $('share').addEventListener('click', share);
-  $('save').addEventListener('click', () => alone(savePicture));
+  $('save').addEventListener('click', saveAlone);
   $('fold').addEventListener('click', () => {
     const closed = $('panel').classList.toggle('closed');
     $('fold').setAttribute('aria-expanded', String(!closed));

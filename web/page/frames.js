@@ -5,7 +5,7 @@ import { applySettings, framesToSettle, tellSettings } from './chooser.js';
 import { showFigures, showFooting } from './figures.js';
 import { writeLink } from './link.js';
 import { $, page, redraw, say, wait } from './page.js';
-import { hasStopped, loadRenderer, orStopped } from './renderer.js';
+import { hasStopped, loadRenderer, orLost, orStopped } from './renderer.js';
 import { showScene } from './scenes.js';
 
 /** Even widths: side by side each eye has half. */
@@ -36,7 +36,7 @@ async function drawFrame() {
   page.stale = false;
   if (page.moved) writeLink();
   page.moved = false;
-  const cost = JSON.parse(await drawOrFail(JSON.stringify(request)));
+  const cost = JSON.parse(await orLost(() => page.viewer.draw(JSON.stringify(request))));
   page.unsettled -= 1;
   page.frames += 1;
   page.firstFrameMs ??= performance.now();
@@ -51,15 +51,6 @@ async function drawFrame() {
   showFigures($('figures'), $('passes'), $('notices'), page.costs);
   showFooting($('footing'), page.firstFrameMs, page.memory.buffer.byteLength);
   adapt(cost.total_ms);
-}
-
-/** The viewer's frame, unless the canvas loses its context before. */
-function drawOrFail(request) {
-  return new Promise((done, failed) => {
-    if (page.lost) throw page.lost;
-    page.fail = failed;
-    orStopped(page.viewer.draw(request)).then(done, failed);
-  });
 }
 
 let last = performance.now();

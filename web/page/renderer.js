@@ -40,6 +40,15 @@ export function orStopped(promise) {
   });
 }
 
+/** What the viewer promises when it is called; fails where the renderer stops, or the canvas loses its context, meanwhile. */
+export function orLost(call) {
+  return new Promise((done, failed) => {
+    if (page.lost) throw page.lost;
+    page.fail = failed;
+    orStopped(call()).then(done, failed);
+  });
+}
+
 /** Reads a file in a worker of its own. Fails with a sentence where it cannot be read, or takes too long. */
 export function rehearse(name, bytes) {
   return new Promise((done, failed) => {

@@ -3,7 +3,7 @@
 import { tellSettings } from './chooser.js';
 import { writeLink } from './link.js';
 import { $, alone, forgetCosts, page, printable, redraw, say, wait } from './page.js';
-import { hasStopped, orStopped, rehearse } from './renderer.js';
+import { hasStopped, orLost, rehearse } from './renderer.js';
 
 const SCENES = ['demo', 'cornell', 'materials-grid', 'alpha', 'demo:1000'];
 
@@ -23,9 +23,9 @@ export async function showScene(scene, place) {
   try {
     if (scene.bytes && !scene.isRead) await rehearse(scene.name, scene.bytes);
     scene.isRead = true;
-    const text = await orStopped(scene.bytes
+    const text = await orLost(() => (scene.bytes
       ? page.viewer.load(scene.name, new Uint8Array(scene.bytes))
-      : page.viewer.generate(scene.name));
+      : page.viewer.generate(scene.name)));
     const shown = JSON.parse(text);
     page.scene = scene;
     forgetCosts();

@@ -356,6 +356,25 @@ test('a lost device is opened again', async () => {
   await page.context().close();
 });
 
+test('a picture that cannot be saved is said, and the page goes on', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25', SMALL);
+  const first = await picture(page);
+  for (const [fail, sentence] of [
+    [() => { window.foveal.viewer.lose_device(); }, /lost/i],
+    // As a trap in a future: the promise never ends, and the window alone is told.
+    [() => { window.foveal.viewer.picture = () => new Promise(() => queueMicrotask(() => { throw new WebAssembly.RuntimeError('unreachable'); })); }, /stopped \(unreachable\) and was started again/],
+  ]) {
+    await page.evaluate(fail);
+    await page.locator('#save').click();
+    await page.locator('.message').waitFor();
+    assert.match(await page.locator('.message').textContent(), sentence);
+    assert.ok((await picture(page)).bytes.equals(first.bytes));
+    await page.locator('.message button').click();
+  }
+  assert.deepEqual(said.filter((text) => !text.includes('unreachable')), []);
+  await page.context().close();
+});
+
 test('on a phone the picture and the controls share the screen', async () => {
   const { page } = await site.visit('#scene=demo:1000&scale=0.5', { width: 390, height: 844 });
   await settled(page);

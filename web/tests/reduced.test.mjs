@@ -112,6 +112,20 @@ test('a lost device and a lost context are opened again', async () => {
   await page.context().close();
 });
 
+test('a context that is lost while a picture is saved is opened again', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25', SMALL);
+  const first = await picture(page);
+  // Nobody tells wgpu that the context is gone.
+  await page.evaluate(() => { window.foveal.viewer.picture = () => new Promise(() => {}); });
+  await page.locator('#save').click();
+  await page.evaluate(() => document.getElementById('picture').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext());
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /lost/i);
+  assert.ok((await picture(page)).bytes.equals(first.bytes));
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
 test('a browser that has WebGPU draws with WebGL 2 where the link asks for it', async (t) => {
   const full = await open('webgpu');
   t.after(() => full.close());
