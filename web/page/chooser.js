@@ -32,6 +32,7 @@ export function framesToSettle() {
 
 function changeSetting(side, key, value) {
   page.settings.set(side, key, value);
+  page.resolution.changed();
   $('techniques').querySelector('[aria-checked="true"]')?.setAttribute('aria-checked', 'mixed');
   nameSides();
   applySettings();
@@ -44,6 +45,7 @@ function useTechnique(technique) {
 
 export function showTechnique(technique) {
   page.technique = technique;
+  page.resolution.changed();
   for (const button of $('techniques').children) {
     const mine = button.dataset.key === technique.key;
     button.setAttribute('aria-checked', String(mine));

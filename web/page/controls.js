@@ -72,7 +72,7 @@ export function wireControls() {
   });
   $('scale').addEventListener('change', (event) => {
     page.scale = event.target.value;
-    page.autoScale = 1;
+    page.resolution.reset();
     redraw();
     writeLink();
   });

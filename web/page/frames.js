@@ -11,17 +11,8 @@ import { showScene } from './scenes.js';
 /** Even widths: side by side each eye has half. */
 function pictureSize() {
   const box = $('stage').getBoundingClientRect();
-  const ratio = Math.min(devicePixelRatio || 1, 2) * (page.scale === 'auto' ? page.autoScale : Number(page.scale));
+  const ratio = Math.min(devicePixelRatio || 1, 2) * (page.scale === 'auto' ? page.resolution.scale : Number(page.scale));
   return { width: Math.max(16, 2 * Math.round((box.width * ratio) / 2)), height: Math.max(16, Math.round(box.height * ratio)) };
-}
-
-/** Halves the resolution while frames take longer than a quarter of a second; doubles it when there is time. */
-function adapt(ms) {
-  if (page.scale !== 'auto') return;
-  if (ms > 250 && page.autoScale > 0.25) page.autoScale /= 2;
-  else if (ms < 40 && page.autoScale < 1) page.autoScale *= 2;
-  else return;
-  redraw();
 }
 
 async function drawFrame() {
@@ -50,7 +41,7 @@ async function drawFrame() {
   page.measured = cost.is_measured;
   showFigures($('figures'), $('passes'), $('notices'), page.costs);
   showFooting($('footing'), page.firstFrameMs, page.memory.buffer.byteLength);
-  adapt(cost.total_ms);
+  if (page.scale === 'auto' && page.resolution.adapt(cost.total_ms)) redraw();
 }
 
 let last = performance.now();

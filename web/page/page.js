@@ -1,5 +1,6 @@
 // What a frame hangs on, and how the page speaks.
 
+import { Resolution } from './resolution.js';
 import { TECHNIQUES } from './techniques.js';
 
 export const $ = (id) => document.getElementById(id);
@@ -20,7 +21,7 @@ export const page = {
   camera: null,
   split: 0.5,
   scale: 'auto',
-  autoScale: 1,
+  resolution: new Resolution(),
   always: false,
   gaze: true,
   // What is shown: a generated scene's name, or a dropped file's name and bytes.

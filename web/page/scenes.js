@@ -29,6 +29,7 @@ export async function showScene(scene, place) {
     const shown = JSON.parse(text);
     page.scene = scene;
     forgetCosts();
+    page.resolution.changed();
     page.home = { place: shown.camera, radius: shown.radius_m };
     page.camera.reset({ ...shown.camera, ...place }, shown.radius_m);
     page.camera.touched = Boolean(place);

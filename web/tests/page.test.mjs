@@ -210,6 +210,26 @@ test('a side that is hidden has no figures of another scene, and no ratio to ano
   await page.context().close();
 });
 
+test('the automatic resolution follows the time of frames', async () => {
+  const { page, said } = await site.visit('#scene=cornell&technique=culling', { width: 500, height: 200 });
+  await settled(page);
+  const width = () => page.evaluate(() => document.getElementById('picture').width);
+  const full = await width();
+  for (const [ms, least] of [[1000, full / 4], [10, full]]) {
+    await page.evaluate((total_ms) => {
+      const { viewer } = window.foveal;
+      viewer.draw = async (request) => JSON.stringify({ ...JSON.parse(await Object.getPrototypeOf(viewer).draw.call(viewer, request)), total_ms });
+    }, ms);
+    await page.locator('#always').check();
+    await page.waitForFunction((least) => Math.abs(document.getElementById('picture').width - least) <= 2, least);
+    await page.locator('#always').uncheck();
+    await settled(page);
+    assert.ok(Math.abs((await width()) - least) <= 2, `${await width()} of ${full}`);
+  }
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
 test('looking around by mouse and keys changes the picture, and home brings it back', async () => {
   const { page } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
   const first = await picture(page);
