@@ -44,11 +44,19 @@ async function drawFrame() {
   if (page.scale === 'auto' && page.resolution.adapt(cost.total_ms)) redraw();
 }
 
+/** Whether a point of the page has become other pixels, as on another monitor; its size need not change. */
+let pixelRatio = devicePixelRatio;
+function hasOtherPixels() {
+  const before = pixelRatio;
+  pixelRatio = devicePixelRatio;
+  return pixelRatio !== before;
+}
+
 let last = performance.now();
 export async function turn(now) {
   const seconds = (now - last) / 1000;
   last = now;
-  if (page.camera.step(seconds) || page.always) redraw();
+  if (page.camera.step(seconds) || hasOtherPixels() || page.always) redraw();
   if ((page.stale || page.unsettled > 0 || !page.measured) && !page.busy) {
     page.busy = true;
     try {

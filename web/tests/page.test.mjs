@@ -230,6 +230,23 @@ test('the automatic resolution follows the time of frames', async () => {
   await page.context().close();
 });
 
+test('on a monitor with more pixels a point the page draws more pixels', async () => {
+  const { page, said } = await site.visit('#scene=cornell&technique=culling&scale=1', { width: 500, height: 200 });
+  await settled(page);
+  const devtools = await page.context().newCDPSession(page);
+  const width = () => page.evaluate(() => document.getElementById('picture').width);
+  const first = await width();
+  for (const ratio of [2, 1.5, 1]) {
+    await devtools.send('Emulation.setDeviceMetricsOverride', { width: 500, height: 200, deviceScaleFactor: ratio, mobile: false });
+    await page.waitForFunction((ratio) => devicePixelRatio === ratio, ratio);
+    await page.waitForTimeout(300);
+    await settled(page);
+    assert.ok(Math.abs((await width()) - ratio * first) <= 2, `${await width()} of ${first} at ${ratio}`);
+  }
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
 test('looking around by mouse and keys changes the picture, and home brings it back', async () => {
   const { page } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
   const first = await picture(page);
