@@ -7,7 +7,8 @@
 // - Meshes are baked when they are seen first, about 2.5 microseconds per triangle, and known again by a
 //   hash of their content. SetStaticMeshes(true) knows them by their addresses instead, without hashing:
 //   call it again after freeing meshes. Vertices that are given in clip space change in every frame and are
-//   baked in every frame: pass model vertices and a matrix.
+//   baked in every frame: pass model vertices and a matrix. A frame may have up to 32 views, each with its
+//   ClearBuffer: with more, meshes that one view alone draws may be baked in every frame.
 // - Tests that run on the job system that was given to SetJobs need a Finish() before: the first test would
 //   wait for workers that wait for the first test.
 // - RenderTriangles always returns VISIBLE, which is the safe answer. Clip planes are found without the mask.
@@ -30,6 +31,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cfloat>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -100,9 +102,10 @@ public:
         for (auto known = meshes_.begin(); known != meshes_.end();) {
             Known &mesh = known->second;
             mesh.drawn = 0;
-            // Content that was there in one frame only is that of clip-space vertices: it does not come back.
+            // Clip-space vertices that were there in one frame only do not come back.
             const bool once = mesh.first_frame == mesh.last_frame && !static_meshes_;
-            if (frame_ - mesh.last_frame > (once ? 1 : FRAMES_KEPT)) {
+            const std::uint64_t kept = !once ? FRAMES_KEPT : mesh.in_clip_space ? 1 : FRAMES_KEPT_ONCE;
+            if (frame_ - mesh.last_frame > kept) {
                 forget(mesh);
                 known = meshes_.erase(known);
             } else {
@@ -127,19 +130,17 @@ public:
             return VISIBLE;
         }
         mesh->last_frame = frame_;
+        mesh->in_clip_space = clip_from_model == nullptr;
+        dirty_ = true;
         if (mesh->drawn < mesh->ids.size()) {
             const FovealCullOccluderId id = mesh->ids[mesh->drawn];
+            const bool off = mesh->drawn >= mesh->enabled;
             // An occluder that stayed at its old place counts as not drawn: the next frame switches it off.
-            dirty_ = true;
-            if (!note(foveal_cull_occluders_move(occluders_, &id, place, 1))) {
+            if (!note(foveal_cull_occluders_move(occluders_, &id, place, 1)) ||
+                (off && !note(foveal_cull_occluders_enable(occluders_, id, 1)))) {
                 return VISIBLE;
             }
-            if (mesh->drawn >= mesh->enabled) {
-                if (!note(foveal_cull_occluders_enable(occluders_, id, 1))) {
-                    return VISIBLE;
-                }
-                mesh->enabled = mesh->drawn + 1;
-            }
+            mesh->enabled = off ? mesh->drawn + 1 : mesh->enabled;
         } else {
             FovealCullOccluderId id{};
             if (!note(foveal_cull_occluders_add(occluders_, mesh->mesh, place, &id))) {
@@ -149,7 +150,6 @@ public:
             mesh->enabled = mesh->ids.size();
         }
         ++mesh->drawn;
-        dirty_ = true;
         return VISIBLE;
     }
 
@@ -187,6 +187,10 @@ public:
                 for (int axis = 0; axis < 3; ++axis) {
                     corner[k][axis] = place[axis] * point[0] + place[3 + axis] * point[1] +
                                       place[6 + axis] * point[2] + place[9 + axis];
+                    // NaN, or beyond what a box can hold.
+                    if (!(std::fabs(corner[k][axis]) <= FLT_MAX)) {
+                        return VISIBLE;
+                    }
                 }
             }
             if (faces_away(corner, winding)) {
@@ -267,6 +271,8 @@ public:
 private:
     /// Frames after which a mesh is forgotten that was drawn in several frames, or is static.
     static constexpr std::uint64_t FRAMES_KEPT = 120;
+    /// The same for other model meshes, which a frame of so many views clears and draws once.
+    static constexpr std::uint64_t FRAMES_KEPT_ONCE = 32;
 
     struct Source {
         const float *vertices;
@@ -284,6 +290,7 @@ private:
         std::size_t enabled = 0;
         std::uint64_t first_frame = 0;
         std::uint64_t last_frame = 0;
+        bool in_clip_space = false;
     };
 
     struct Key {
@@ -392,8 +399,7 @@ private:
     /// A mesh that was baked before, or is baked now; null if it cannot be.
     Known *known(const Source &s) {
         const Key key = key_of(s);
-        const auto found = meshes_.find(key);
-        if (found != meshes_.end()) {
+        if (const auto found = meshes_.find(key); found != meshes_.end()) {
             return &found->second;
         }
         std::vector<unsigned int> triangles(s.triangles, s.triangles + 3 * static_cast<std::size_t>(s.count));
@@ -406,8 +412,7 @@ private:
             read(s.vertices, named[i], s.layout, &points[3 * i]);
         }
         for (unsigned int &index : triangles) {
-            const auto at = std::lower_bound(named.begin(), named.end(), index);
-            index = static_cast<unsigned int>(at - named.begin());
+            index = static_cast<unsigned int>(std::lower_bound(named.begin(), named.end(), index) - named.begin());
         }
         for (std::size_t t = 0; s.turn && t < triangles.size(); t += 3) {
             std::swap(triangles[t + 1], triangles[t + 2]);
@@ -450,11 +455,10 @@ private:
             }
         }
         FovealCullEye eye{};
-        eye.world_from_eye[0] = eye.world_from_eye[4] = eye.world_from_eye[8] = 1.0;
-        eye.left = eye.bottom = -1.0;
+        eye.world_from_eye[0] = eye.world_from_eye[4] = eye.world_from_eye[8] = eye.top = 1.0;
+        eye.left = -1.0;
         // The buffer has whole pixels of four by four of the picture's.
         eye.right = -1.0 + 2.0 * static_cast<double>((width_ + 3) / 4 * 4) / width_;
-        eye.top = 1.0;
         eye.bottom = 1.0 - 2.0 * static_cast<double>((height_ + 3) / 4 * 4) / height_;
         eye.near_m = static_cast<double>(used_near());
         eye.far_m = std::numeric_limits<double>::infinity();

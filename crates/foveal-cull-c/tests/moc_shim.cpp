@@ -64,6 +64,20 @@ void calls() {
     expect(triangle(40, -9, MaskedOcclusionCulling::BACKFACE_CW) == MaskedOcclusionCulling::VIEW_CULLED, "beside");
     expect(triangle(0, -4, MaskedOcclusionCulling::BACKFACE_CCW) == MaskedOcclusionCulling::VIEW_CULLED, "back face");
     expect(triangle(0, -4, MaskedOcclusionCulling::BACKFACE_NONE) == MaskedOcclusionCulling::VISIBLE, "two-sided");
+    // Behind the wall or facing away, but for one number that cannot be judged.
+    for (const float odd : {nan, INFINITY, -INFINITY, 3e38f}) {
+        for (int at = 0; at < 9; ++at) {
+            for (const auto winding : {MaskedOcclusionCulling::BACKFACE_CW, MaskedOcclusionCulling::BACKFACE_CCW}) {
+                float points[] = {0, 0, -9, 0.5f, 0, -9, 0, 0.5f, -9};
+                points[at] = odd;
+                float doubled[16];
+                std::transform(clip_from_model, clip_from_model + 16, doubled, [](float v) { return 2 * v; });
+                expect(moc->TestTriangles(points, indices, 1, doubled, winding, MaskedOcclusionCulling::CLIP_PLANE_ALL,
+                                          layout) == MaskedOcclusionCulling::VISIBLE,
+                       "what cannot be judged is visible");
+            }
+        }
+    }
     // 1 / w.
     std::vector<float> depth(320 * 192);
     moc->ComputePixelDepthBuffer(depth.data(), true);
@@ -224,6 +238,32 @@ void meshes() {
     MaskedOcclusionCulling::Destroy(moc);
 }
 
+// Several views a frame, each with meshes of its own, and content that changes.
+void views() {
+    MaskedOcclusionCulling *moc = MaskedOcclusionCulling::Create();
+    moc->SetResolution(320, 192);
+    const MaskedOcclusionCulling::VertexLayout layout(12, 4, 8);
+    float wall[] = {-3, -3, -5, 3, -3, -5, 3, 3, -5, -3, 3, -5};
+    const auto draw = [&](float z) {
+        moc->ClearBuffer();
+        wall[2] = z;
+        moc->RenderTriangles(wall, quad, 2, clip_from_model, MaskedOcclusionCulling::BACKFACE_CW,
+                             MaskedOcclusionCulling::CLIP_PLANE_ALL, layout);
+    };
+    const int count = 32;
+    for (int frame = 0; frame < 4; ++frame) {
+        for (int view = 0; view < count; ++view) {
+            draw(-5 - 0.01f * static_cast<float>(view));
+        }
+        expect(moc->GetMeshCount() == count, "a mesh of one view is kept until that view's next frame");
+    }
+    for (int frame = 0; frame < 200; ++frame) {
+        draw(-6 - 0.01f * static_cast<float>(frame));
+    }
+    expect(moc->GetMeshCount() <= count + 1, "content that does not come back is forgotten");
+    MaskedOcclusionCulling::Destroy(moc);
+}
+
 // Random triangles in clip space: what is called occluded is covered, at every pixel centre of the picture.
 int random_frames() {
     const int width = 72, height = 52;
@@ -292,6 +332,7 @@ int main() {
     calls();
     tests_on_the_job_system();
     meshes();
+    views();
     const int occluded = random_frames();
     std::printf("shim: %d random rectangles occluded, %d failures\n", occluded, failures);
     return failures == 0 ? 0 : 1;
