@@ -19,7 +19,9 @@
  * Threads. Functions that take const objects may be called from many threads at once. A function that
  * changes an object returns FOVEAL_CULL_BUSY while another call uses it, and so do calls that use an
  * object while another one changes it: tests of a culler that is rasterizing, for instance. No function
- * waits for an object. Cullers that rasterize on the same FovealCullThreads take turns with them.
+ * waits for an object. Cullers that rasterize on the same FovealCullThreads take turns with them. A task
+ * that these threads run may rasterize on them too, which its own thread then does alone; but it must not
+ * wait for another thread that rasterizes or runs tasks on them.
  *
  * Structs begin with their size: set `size` to sizeof, or use the init function. New versions only add
  * fields at the end. Functions named _sized take the size of the struct that the caller has and write no

@@ -78,6 +78,25 @@ fn a_task_that_panics_is_the_callers_panic_and_the_threads_go_on() {
     }
 }
 
+/// Tasks that run tasks on the same threads, directly and through other threads on the way; and from
+/// a second caller.
+#[test]
+fn tasks_may_run_tasks_on_the_threads_that_run_them() {
+    for threads in [1, 2, 4] {
+        let [pool, other] = [threads, 1].map(WorkerThreads::new);
+        let ran = AtomicUsize::new(0);
+        let count = |_| {
+            ran.fetch_add(1, Ordering::Relaxed);
+        };
+        let twice = || pool.run(6, &|_| other.run(2, &|_| pool.run(5, &count)));
+        std::thread::scope(|scope| {
+            scope.spawn(twice);
+            twice();
+        });
+        assert_eq!(ran.into_inner(), 2 * 6 * 2 * 5, "{threads} threads");
+    }
+}
+
 #[test]
 fn queries_from_many_threads_at_once_have_the_answers_of_one() {
     let mut r = Random::new(11);

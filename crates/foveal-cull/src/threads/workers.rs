@@ -17,7 +17,9 @@ mod model;
 use super::run::Threads;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::PoisonError;
-use sync::{Arc, AtomicU64, AtomicUsize, Condvar, JoinHandle, Mutex, MutexGuard, Ordering};
+use sync::{
+    Arc, AtomicU64, AtomicUsize, Condvar, JoinHandle, Mutex, MutexGuard, Ordering, ThreadId,
+};
 
 /// What threads and memory are; under `--cfg loom` the model checker's.
 #[cfg(not(all(test, loom)))]
@@ -25,7 +27,7 @@ mod sync {
     pub(super) use core::hint::spin_loop;
     pub(super) use core::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
     pub(super) use std::sync::{Arc, Condvar, Mutex, MutexGuard};
-    pub(super) use std::thread::{Builder, JoinHandle, yield_now};
+    pub(super) use std::thread::{Builder, JoinHandle, ThreadId, current, yield_now};
 
     /// Times that a waiting thread looks for work before it sleeps, about ten nanoseconds each.
     pub(super) const LOOKS: u32 = 4000;
@@ -35,7 +37,7 @@ mod sync {
     pub(super) use loom::hint::spin_loop;
     pub(super) use loom::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
     pub(super) use loom::sync::{Arc, Condvar, Mutex, MutexGuard};
-    pub(super) use loom::thread::{Builder, JoinHandle, yield_now};
+    pub(super) use loom::thread::{Builder, JoinHandle, ThreadId, current, yield_now};
 
     /// Every further look makes the same choices possible once more.
     pub(super) const LOOKS: u32 = 1;
@@ -43,8 +45,9 @@ mod sync {
 
 /// Threads of the culler's own, started once and joined when dropped.
 ///
-/// One [`Threads::run`] at a time: a second one from another thread waits its turn. A task must not
-/// call `run` on the worker threads that run it.
+/// One [`Threads::run`] at a time: a second one from another thread waits its turn. A task may call
+/// `run` on the worker threads that run it: the tasks of that call run one by one on the task's own
+/// thread. A task must not wait for another thread that calls `run` on them.
 #[derive(Debug)]
 pub struct WorkerThreads {
     shared: Arc<Shared>,
@@ -70,6 +73,8 @@ struct Shared {
 struct State {
     task: Option<Task>,
     tasks: usize,
+    /// The thread whose turn it is.
+    caller: Option<ThreadId>,
     round: u64,
     /// Helpers that hold the task.
     active: usize,
@@ -178,7 +183,10 @@ struct Posted<'a>(&'a Shared);
 
 impl Drop for Posted<'_> {
     fn drop(&mut self) {
-        self.0.lock().task = None;
+        {
+            let mut state = self.0.lock();
+            (state.task, state.caller) = (None, None);
+        }
         self.0.watch(|s| s.active.load(Ordering::Acquire) == 0);
         let mut state = self.0.lock();
         while state.active > 0 {
@@ -208,6 +216,13 @@ impl WorkerThreads {
             turn: Mutex::new(()),
         }
     }
+
+    /// Whether this thread is running a task of these threads.
+    fn is_within_run(&self) -> bool {
+        let this = sync::current().id();
+        let mut helpers = self.helpers.iter();
+        helpers.any(|h| h.thread().id() == this) || self.shared.lock().caller == Some(this)
+    }
 }
 
 impl Threads for WorkerThreads {
@@ -216,6 +231,10 @@ impl Threads for WorkerThreads {
     }
 
     fn run(&self, tasks: usize, task: &(dyn Fn(usize) + Sync)) {
+        if self.is_within_run() {
+            // The turn ends only after this task.
+            return (0..tasks).for_each(task);
+        }
         let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
         let pointer: *const (dyn Fn(usize) + Sync + '_) = task;
         // SAFETY: only the lifetime changes; `Posted` ends every use before `task` does.
@@ -225,6 +244,7 @@ impl Threads for WorkerThreads {
             let mut state = self.shared.lock();
             self.shared.next.store(0, Ordering::Relaxed);
             (state.task, state.tasks, state.panicked) = (Some(Task(pointer)), tasks, false);
+            state.caller = Some(sync::current().id());
             state.round += 1;
             self.shared.round.store(state.round, Ordering::Release);
             self.shared.announce(state);

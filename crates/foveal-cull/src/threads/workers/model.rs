@@ -42,6 +42,14 @@ fn a_second_run_has_nothing_of_the_first() {
 }
 
 #[test]
+fn tasks_run_tasks_on_the_threads_that_run_them() {
+    in_every_order(|| {
+        let threads = WorkerThreads::new(2);
+        threads.run(2, &|_| assert_eq!(run(&threads), [1, 1]));
+    });
+}
+
+#[test]
 fn a_wake_without_work_changes_nothing() {
     in_every_order(|| {
         let threads = WorkerThreads::new(2);
