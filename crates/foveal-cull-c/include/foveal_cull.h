@@ -393,7 +393,8 @@ static inline FovealCullStatus foveal_cull_view_init(const FovealCullEye *eye, F
 
 /* ---- Threads ---- */
 
-/* Starts `count` - 1 threads; the calling thread is the last one. 1 to 256. */
+/* Starts `count` - 1 threads; the calling thread is the last one. 1 to 256. Threads that the system refuses
+ * are left out: the `count` of foveal_cull_threads_jobs says how many there are. */
 FovealCullStatus foveal_cull_threads_create(uint32_t count, FovealCullThreads **out);
 
 /* Joins the threads. Null is nothing. */

@@ -25,6 +25,11 @@ unsafe impl Plain for foveal_cull::Aabb {}
 /// Sizes above this are no size of a struct, but memory that was not initialized.
 const LARGEST_STRUCT: usize = 4096;
 
+/// Whether a version of `T` may have this size: others end within a field.
+fn is_whole<T>(size: usize) -> bool {
+    size.is_multiple_of(align_of::<T>())
+}
+
 fn check<T>(pointer: *const T, name: &str) -> Result<(), Fault> {
     if pointer.is_null() {
         return Err(Fault::new(
@@ -205,6 +210,9 @@ pub(crate) unsafe fn sized<T: Plain>(
     if size > LARGEST_STRUCT {
         return wrong("which is too large: set it to sizeof");
     }
+    if !is_whole::<T>(size) {
+        return wrong("which no struct has: set it to sizeof");
+    }
     let known = size.min(size_of::<T>());
     let mut value = default;
     // SAFETY: `known` bytes are there by the caller's word, and fit into `value`, for which any
@@ -252,7 +260,7 @@ pub(crate) unsafe fn init_sized<T: Plain>(
     name: &str,
 ) -> Result<(), Fault> {
     check(pointer, name)?;
-    if !(least..=LARGEST_STRUCT).contains(&size) {
+    if !(least..=LARGEST_STRUCT).contains(&size) || !is_whole::<T>(size) {
         return Err(Fault::new(
             FovealCullStatus::BadStructSize,
             format!("'{name}' has the size {size}: set it to sizeof"),

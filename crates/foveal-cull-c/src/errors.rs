@@ -33,8 +33,8 @@ pub unsafe extern "C" fn foveal_cull_last_error(text: *mut c_char, size: usize) 
             while !last.is_char_boundary(copied) {
                 copied -= 1;
             }
-            // SAFETY: the caller says that there are `size` bytes.
-            let to = unsafe { border::zeroed_list(text.cast::<u8>(), size, "text") }?;
+            // SAFETY: the caller says that there are `size` bytes, of which these are the first.
+            let to = unsafe { border::zeroed_list(text.cast::<u8>(), copied + 1, "text") }?;
             to[..copied].copy_from_slice(&last.as_bytes()[..copied]);
             Ok(())
         })

@@ -3,7 +3,7 @@
 
 use crate::border::{self, Plain};
 use crate::status::{Fault, FovealCullStatus, guard};
-use foveal_cull::{Affine, ClipDepth, CullError, Eye, Matrix4, Projection, View};
+use foveal_cull::{Affine, ClipDepth, CullError, Eye, Matrix4, Projection, Quantity, View};
 
 /// The depths of the near and the far plane in clip space, z / w.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -230,10 +230,14 @@ pub unsafe extern "C" fn foveal_cull_eye_look_at(
             let target = *border::object(target.cast::<[f64; 3]>(), "target")?;
             let up = *border::object(up.cast::<[f64; 3]>(), "up")?;
             let frustum = Projection::perspective(fov_y_rad, aspect, near_m, f64::INFINITY);
-            let all = [position, target, up].concat();
-            if !all.iter().all(|v| v.is_finite()) {
-                let pose = CullError::NotFinite(foveal_cull::Quantity::Pose);
-                return Err(pose.into());
+            let pose = [position, target, up].concat();
+            for (numbers, quantity) in [
+                (&pose[..], Quantity::Pose),
+                (&[fov_y_rad, aspect, near_m], Quantity::Projection),
+            ] {
+                if !numbers.iter().all(|v| v.is_finite()) {
+                    return Err(CullError::NotFinite(quantity).into());
+                }
             }
             let eye = Eye::look_at(position, target, up, frustum);
             border::put(out, FovealCullEye::of(&eye), "out")

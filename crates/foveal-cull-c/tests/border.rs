@@ -42,6 +42,15 @@ fn every_status_has_a_text_and_failures_have_one_of_their_own() {
         CStr::from_ptr(short.as_ptr())
     };
     assert_eq!(text.to_str().unwrap(), &whole[..5]);
+    // However large a buffer is said to be, no more is written than the text.
+    let mut exact = vec![1u8; whole.len() + 2];
+    for size in [exact.len(), usize::MAX] {
+        exact.fill(1);
+        // SAFETY: there are more bytes than the text has.
+        let needed = unsafe { foveal_cull_last_error(exact.as_mut_ptr().cast(), size) };
+        assert_eq!(needed, whole.len() + 1);
+        assert_eq!(exact, format!("{whole}\0\u{1}").as_bytes());
+    }
     let other = std::thread::spawn(last_error).join().unwrap();
     assert_eq!(other, "", "another thread has not failed");
     // SAFETY: the text is a constant.
@@ -84,14 +93,14 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
         let heights = foveal_cull_mesh_from_heights;
         assert_eq!(heights(null(), 2, 2, 1.0, 1.0, 1, &mut out), null_pointer);
         assert_eq!(heights(some, 1, 3, 1.0, 1.0, 1, null_mut()), null_pointer);
-        // No rows, however long.
-        let mut empty = null_mut();
-        assert_eq!(
-            heights(null(), usize::MAX, 0, 1.0, 1.0, 1, &mut empty),
-            FovealCullStatus::Ok
-        );
-        assert_eq!(foveal_cull_mesh_triangle_count(empty), 0);
-        foveal_cull_mesh_destroy(empty);
+        // No rows, however long, or no columns.
+        for (columns, rows) in [(usize::MAX, 0), (0, usize::MAX)] {
+            let mut empty = null_mut();
+            let baked = heights(null(), columns, rows, 1.0, 1.0, 1, &mut empty);
+            assert_eq!(baked, Status::Ok);
+            assert_eq!(foveal_cull_mesh_triangle_count(empty), 0);
+            foveal_cull_mesh_destroy(empty);
+        }
         assert_eq!(foveal_cull_mesh_triangle_count(null()), 0);
         assert_eq!(foveal_cull_mesh_to_bytes(null(), null_mut(), 8), 0);
         assert_eq!(

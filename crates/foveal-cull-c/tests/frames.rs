@@ -201,6 +201,12 @@ fn bad_views_options_and_jobs_are_refused_and_leave_everything_visible() {
         None,
         Status::BadStructSize,
     );
+    // Half of a pointer.
+    let half = FovealCullFrameOptions {
+        size: plain.size - 4,
+        ..plain
+    };
+    check(good, half, None, Status::BadStructSize);
     let jobs = FovealCullJobs {
         size: size_of::<FovealCullJobs>() as u32,
         count: 4,
@@ -421,6 +427,15 @@ fn matrices_and_origins_pass_the_border() {
             Status::NotFinite
         );
         let odd = [0.0, f64::INFINITY, 0.0];
+        let (at, target, up) = ([0.0f64; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]);
+        for (odd_one, bad) in [(0, f64::NAN), (1, f64::INFINITY), (2, f64::NAN)] {
+            let mut lens = [1.0, 1.0, 0.1];
+            lens[odd_one] = bad;
+            let [fov, aspect, near] = lens;
+            let [at, target, up] = [&at, &target, &up].map(|p| p.as_ptr());
+            let status = foveal_cull_eye_look_at(at, target, up, fov, aspect, near, &mut same);
+            assert_eq!((status, same), (Status::NotFinite, eye), "{lens:?}");
+        }
         let mut result = [9];
         let test = foveal_culler_test_boxes;
         let status = test(

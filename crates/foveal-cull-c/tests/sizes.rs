@@ -31,7 +31,8 @@ fn check<T>(first: usize, init: impl Fn(*mut T, usize) -> Status) {
         );
         (status, memory)
     };
-    for size in [0, 4, first - 1, 4097, usize::MAX] {
+    // No struct ends within a field.
+    for size in [0, 4, first - 1, first + 1, first + 4, 4097, usize::MAX] {
         assert_eq!(filled(size).0, Status::BadStructSize, "{size}");
     }
     // The library's own struct is at least as large; that of a newer header may be larger.
