@@ -9,6 +9,8 @@ use glam::{Mat4, Vec2, Vec3};
 const TURN_RAD: f32 = 0.005;
 /// Steepest look up or down.
 const STEEPEST_RAD: f32 = 1.55;
+/// Cosine of the pitch below which a heading is that of the axis to the right.
+const STEEP: f32 = 1e-3;
 /// Radians a second that an arrow key turns.
 const KEY_TURN_RAD_S: f32 = 1.2;
 
@@ -114,7 +116,13 @@ impl Navigator {
             self.radius_m = towards.max(1e-3 * self.bounds.size().length().max(1e-3));
         }
         let forward = (-camera.world_from_view.z_axis.truncate()).normalize_or(Vec3::NEG_Z);
-        self.yaw_rad = f32::atan2(-forward.x, -forward.z);
+        let is_steep = forward.x.hypot(forward.z) < STEEP;
+        self.yaw_rad = if is_steep {
+            let right = camera.world_from_view.x_axis;
+            f32::atan2(-right.z, right.x)
+        } else {
+            f32::atan2(-forward.x, -forward.z)
+        };
         self.pitch_rad = forward.y.clamp(-1.0, 1.0).asin();
         self.camera = camera;
     }
@@ -394,6 +402,25 @@ mod tests {
             assert!(navigator.camera().eye().dot(looks) < -1.0);
             navigator.look_from(side, bounds, 1.5);
             assert!((forward(&navigator) + looks).length() < 1e-5, "{side:?}");
+        }
+    }
+
+    #[test]
+    fn a_camera_that_looks_straight_down_keeps_its_heading() {
+        let bounds = Aabb::new(Vec3::splat(-1.0), Vec3::splat(1.0));
+        let mut navigator = navigator();
+        for turn in [0.0, 1.0, 2.0, 3.0_f32] {
+            for (pitch, up) in [(-FRAC_PI_2, Vec3::NEG_Z), (FRAC_PI_2, Vec3::Z)] {
+                let turned = Mat4::from_rotation_y(turn);
+                let mut camera = navigator.camera().clone();
+                camera.world_from_view = turned * Mat4::from_rotation_x(pitch);
+                navigator.go_to(camera);
+                navigator.frame(bounds, 1.5);
+                let axes = navigator.camera().world_from_view;
+                let [right, up] = [Vec3::X, up].map(|axis| turned.transform_vector3(axis));
+                assert!(axes.x_axis.truncate().distance(right) < 1e-5, "{turn}");
+                assert!(axes.y_axis.truncate().distance(up) < 1e-5, "{turn}");
+            }
         }
     }
 

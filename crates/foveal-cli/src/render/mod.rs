@@ -344,7 +344,7 @@ fn draw_all(
     let progress = progress_bar(open, "frames", quiet);
     let mut frames = Vec::new();
     let mut first_picture_ms = 0.0;
-    let mut noticed = quiet;
+    let (mut noticed, mut warned) = (quiet, quiet);
     while let Some((job, claim)) = turns.next()? {
         let mut stages = Vec::new();
         let figures = timed(&mut stages, "first_frame", || draw(drawing, job.moment, 0))
@@ -355,6 +355,13 @@ fn draw_all(
         }
         written.write(drawing, &figures, job.file.as_deref(), &mut stages)?;
         drop(claim);
+        if figures.surfaces_left_out > 0 && !std::mem::replace(&mut warned, true) {
+            console::warn(&format!(
+                "frame {}: anti-aliasing left out {} surfaces for want of room, which the next frame has; \
+                 --warmup draws frames before the first picture",
+                job.frame, figures.surfaces_left_out
+            ));
+        }
         let notices = [
             figures.coarse.as_ref().map(|coarse| &coarse.notice),
             figures.variable.as_ref().map(|variable| &variable.notice),

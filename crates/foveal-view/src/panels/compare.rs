@@ -1,7 +1,7 @@
 //! The reference beside the chosen settings: the split's switch, and which of the two is faster.
 
 use egui::{Color32, RichText, Ui};
-use foveal::Settings;
+use foveal::{Output, Settings};
 use foveal_measure::{Comparison, ENOUGH_PAIRS, Finding, LEAST_PAIRS, Spread};
 
 use super::{card, figure};
@@ -28,18 +28,22 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
             .flip
             .map_or("...".to_owned(), |flip| format!("{flip:.4}"));
         figure(ui, "FLIP error", flip);
-        quality(ui, app.quality.as_deref());
+        let stereo = &app.settings.stereo;
+        let is_bent = app.settings.is_stereo() && stereo.output == Output::Headset;
+        quality(ui, app.quality.as_deref(), is_bent);
     });
     ui.add_space(6.0);
 }
 
-/// What an eye sees, and at which display.
-fn quality(ui: &mut Ui, found: Option<&Quality>) {
+/// What an eye sees, and at which display. `is_bent`: pictures are drawn for a headset's lens, through
+/// which the metric does not look.
+fn quality(ui: &mut Ui, found: Option<&Quality>, is_bent: bool) {
     let (name, jod) = match found {
         Some(found) => (
             format!("JOD ({})", found.display),
             format!("{:.2}", found.jod),
         ),
+        None if is_bent => ("JOD".to_owned(), "not of headset output".to_owned()),
         None => ("JOD".to_owned(), "...".to_owned()),
     };
     ui.scope(|ui| figure(ui, &name, jod))

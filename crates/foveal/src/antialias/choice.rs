@@ -20,9 +20,15 @@ pub(crate) fn averages_all(settings: &Settings) -> bool {
 }
 
 /// Whether lobes are added to pixels in which their surfaces are black: where the pixel's colour is a
-/// mean of all its surfaces. Where it is that of the largest they are laid over.
+/// mean of all its surfaces. Where it is that of the largest or of the first sub-sample they are laid
+/// over.
 pub(crate) fn adds_lobes(settings: &Settings) -> bool {
-    settings.antialiasing.mode != Antialiasing::None && averages_all(settings)
+    let finds_all = match settings.antialiasing.mode {
+        Antialiasing::None => false,
+        Antialiasing::Ssaa => true,
+        Antialiasing::Msaa => settings.antialiasing.edge_test == EdgeTest::Surface,
+    };
+    finds_all && averages_all(settings)
 }
 
 /// Side of what a pixel's textures are filtered over, in pixels, where its material is evaluated

@@ -12,7 +12,8 @@ use crate::shading::dielectric::PLAIN_DIELECTRIC;
 use crate::shading::twin::{Surface, position_at, to_eye, unpack_surface};
 use crate::testing::{f32_of_half, picture, rendered, small, texels};
 use crate::{
-    Antialiasing, Composite, Geometry, LightingModel, RateSource, Renderer, Settings, Shading,
+    Antialiasing, Composite, EdgeTest, Geometry, LightingModel, RateSource, Renderer, Settings,
+    Shading,
 };
 
 fn radiance(renderer: &Renderer) -> Vec<Vec3> {
@@ -301,6 +302,36 @@ fn lobes_are_lit_at_every_pixel_in_every_way_of_shading() {
             }
         }
         assert!(compared > 2000, "{compared}");
+    }
+}
+
+#[test]
+fn rims_of_lobes_are_between_what_meets_there_where_edges_are_not_averaged() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    let (width, height) = (131, 97);
+    let large = radiance(&rendered(&scene, camera, &small(2 * width, 2 * height)));
+    for test in [EdgeTest::Never, EdgeTest::Paper] {
+        let settings = small(width, height).with(|s| {
+            s.antialiasing.mode = Antialiasing::Msaa;
+            s.antialiasing.edge_test = test;
+            s.antialiasing.samples = 4;
+        });
+        let drawn = radiance(&rendered(&scene, camera, &settings));
+        let mut beyond = 0;
+        for (i, color) in drawn.iter().enumerate() {
+            let (x, y) = (i as u32 % width, i as u32 / width);
+            let [xs, ys] = [(x, 2 * width), (y, 2 * height)]
+                .map(|(at, end)| (2 * at).saturating_sub(1)..(2 * at + 3).min(end));
+            let near = ys.flat_map(|y| xs.clone().map(move |x| (y * 2 * width + x) as usize));
+            let near: Vec<Vec3> = near.map(|i| large[i]).collect();
+            let least = near.iter().copied().fold(Vec3::INFINITY, Vec3::min);
+            let most = near.iter().copied().fold(Vec3::ZERO, Vec3::max);
+            let is_between =
+                color.cmpge(0.8 * least - 0.01).all() && color.cmple(1.25 * most + 0.01).all();
+            beyond += usize::from(!is_between);
+        }
+        assert!(beyond < 40, "{test:?}: {beyond} pixels");
     }
 }
 

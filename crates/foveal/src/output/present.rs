@@ -9,8 +9,8 @@ use crate::shader;
 pub(crate) struct PresentPass {
     layout: wgpu::BindGroupLayout,
     bilinear: wgpu::Sampler,
-    /// For the format of the last target.
-    pipeline: Option<(wgpu::TextureFormat, wgpu::RenderPipeline)>,
+    /// For the format of the last target, and the pictures side by side.
+    pipeline: Option<((wgpu::TextureFormat, usize), wgpu::RenderPipeline)>,
 }
 
 impl PresentPass {
@@ -37,16 +37,18 @@ impl PresentPass {
         }
     }
 
-    /// Encodes the pass.
+    /// Encodes the pass. `pictures`: side by side, each stretched by itself.
     pub(crate) fn present(
         &mut self,
         recorder: &mut Recorder<'_>,
         picture: &wgpu::TextureView,
         target: Target<'_>,
+        pictures: usize,
     ) {
         let gpu = recorder.gpu;
         let format = target.format;
-        if self.pipeline.as_ref().is_none_or(|(f, _)| *f != format) {
+        let key = (format, pictures);
+        if self.pipeline.as_ref().is_none_or(|(k, _)| *k != key) {
             let pipeline = shader::full_screen(
                 gpu,
                 "present",
@@ -54,9 +56,12 @@ impl PresentPass {
                 "present",
                 &[recorder.frame.layout(), &self.layout],
                 format,
-                &[("ENCODED_BY_TARGET", f64::from(u8::from(format.is_srgb())))],
+                &[
+                    ("ENCODED_BY_TARGET", f64::from(u8::from(format.is_srgb()))),
+                    ("PICTURES", pictures as f64),
+                ],
             );
-            self.pipeline = Some((format, pipeline));
+            self.pipeline = Some((key, pipeline));
         }
         let Some((_, pipeline)) = &self.pipeline else {
             return;

@@ -2,6 +2,8 @@
 
 // Whether the target encodes sRGB by itself.
 override ENCODED_BY_TARGET: bool = false;
+// Pictures side by side, which are stretched each by itself.
+override PICTURES: u32 = 1u;
 
 @group(1) @binding(0) var picture: texture_2d<f32>;
 @group(1) @binding(1) var bilinear: sampler;
@@ -19,7 +21,11 @@ fn full_screen(@builtin(vertex_index) index: u32) -> PresentVertex {
 
 @fragment
 fn present(in: PresentVertex) -> @location(0) vec4f {
-    let encoded = textureSampleLevel(picture, bilinear, in.place, 0.0).rgb;
+    let pictures = f32(PICTURES);
+    let border = 0.5 / f32(textureDimensions(picture).x);
+    let left = floor(in.place.x * pictures) / pictures;
+    let x = clamp(in.place.x, left + border, left + 1.0 / pictures - border);
+    let encoded = textureSampleLevel(picture, bilinear, vec2f(x, in.place.y), 0.0).rgb;
     if !ENCODED_BY_TARGET {
         return vec4f(encoded, 1.0);
     }

@@ -9,6 +9,8 @@ use crate::{Settings, Target};
 #[derive(Debug)]
 pub(crate) struct Upscale {
     pass: PresentPass,
+    /// Side by side in what is drawn.
+    pictures: usize,
     picture_view: wgpu::TextureView,
 }
 
@@ -19,6 +21,7 @@ impl Upscale {
         let none = wgpu::TextureUsages::empty();
         (settings.drawn().picture_size() != size).then(|| Self {
             pass: PresentPass::new(gpu),
+            pictures: settings.pictures_beside(),
             picture_view: target(gpu, "upscaled picture", size, PICTURE_FORMAT, none),
         })
     }
@@ -29,7 +32,7 @@ impl Upscale {
             view: &self.picture_view,
             format: PICTURE_FORMAT,
         };
-        self.pass.present(recorder, drawn, target);
+        self.pass.present(recorder, drawn, target, self.pictures);
     }
 
     /// The picture.
@@ -49,7 +52,7 @@ mod tests {
     use foveal_generate as generate;
 
     use crate::testing::{picture, rendered, small};
-    use crate::{Geometry, RateSource, Shading};
+    use crate::{Geometry, Output, RateSource, Shading};
 
     /// A picture of `from`'s size, stretched as a sampler does that clamps to the border.
     fn stretched(bytes: &[u8], from: (u32, u32), to: (u32, u32)) -> Vec<f32> {
@@ -120,6 +123,39 @@ mod tests {
                 .fold(0.0, f32::max);
             // Samplers weigh in steps of 1/256.
             assert!(off <= 2.0, "{size:?}, {scale}: {off}");
+        }
+    }
+
+    #[test]
+    fn each_eyes_picture_is_stretched_by_itself() {
+        let scene = generate::cornell();
+        let camera = &scene.cameras[0];
+        for (output, width) in [(Output::SideBySide, 61), (Output::SideBySideHalf, 124)] {
+            let scaled = small(width, 40).with(|s| {
+                s.picture.render_scale = 0.5;
+                s.stereo.mode = crate::Stereo::TwoPass;
+                s.stereo.ipd_m = 0.8;
+                s.stereo.output = output;
+            });
+            let drawn = scaled.drawn();
+            let [large, own] = [&scaled, &drawn].map(|s| picture(&rendered(&scene, camera, s)));
+            let (from, to) = (drawn.picture_size(), scaled.picture_size());
+            let half = |bytes: &[u8], width: u32, eye: u32| -> Vec<u8> {
+                let rows = bytes.chunks_exact(4 * width as usize);
+                let half = 2 * width as usize;
+                let at = half * eye as usize;
+                rows.flat_map(|row| row[at..at + half].to_vec()).collect()
+            };
+            for eye in 0..2 {
+                let [a, b] = [half(&large, to.0, eye), half(&own, from.0, eye)];
+                let expected = stretched(&b, (from.0 / 2, from.1), (to.0 / 2, to.1));
+                let off = a
+                    .iter()
+                    .zip(&expected)
+                    .map(|(&a, b)| (f32::from(a) - b).abs());
+                let off = off.fold(0.0, f32::max);
+                assert!(off <= 2.0, "{output:?}, eye {eye}: {off}");
+            }
         }
     }
 }

@@ -251,7 +251,12 @@ impl Renderer {
             upscale.stretch(recorder, targets.shown());
         }
         if let Some(target) = target {
-            self.present.present(recorder, targets.shown(), target);
+            (self.present).present(
+                recorder,
+                targets.shown(),
+                target,
+                stages.settings.pictures_beside(),
+            );
         }
         self.timer.resolve(&mut encoder);
         cpu.stage("encode");

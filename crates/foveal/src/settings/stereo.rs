@@ -75,6 +75,16 @@ pub enum Output {
     Headset,
 }
 
+impl Output {
+    /// Pictures side by side.
+    pub(crate) fn pictures_beside(self) -> usize {
+        match self {
+            Self::Flat | Self::Anaglyph | Self::AnaglyphDubois => 1,
+            Self::SideBySide | Self::SideBySideHalf | Self::Headset => 2,
+        }
+    }
+}
+
 /// A headset's lens as a radial polynomial. Radii are tangents of the angle to the lens's axis. A
 /// point that the screen shows at radius `p` appears to the eye at `p (1 + k1 p² + k2 p⁴ + k3 p⁶)`,
 /// times a factor per colour.

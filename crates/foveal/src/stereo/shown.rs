@@ -55,10 +55,7 @@ impl ShownEyes {
     /// in an anaglyph the right eye's picture lies over it.
     #[must_use]
     pub fn count(&self) -> usize {
-        match self.output {
-            Output::Flat | Output::Anaglyph | Output::AnaglyphDubois => 1,
-            Output::SideBySide | Output::SideBySideHalf | Output::Headset => 2,
-        }
+        self.output.pictures_beside()
     }
 
     /// Whether straight lines are shown bent, by a headset's lens.

@@ -35,6 +35,15 @@ impl Settings {
         }
     }
 
+    /// Pictures side by side in what is shown: each eye's own, or one.
+    pub(crate) fn pictures_beside(&self) -> usize {
+        if self.is_stereo() {
+            self.stereo.output.pictures_beside()
+        } else {
+            1
+        }
+    }
+
     /// Whether a source of the rate map is the lens.
     pub(crate) fn rates_by_lens(&self) -> bool {
         let second = self.coarse.combine != RateCombine::First;

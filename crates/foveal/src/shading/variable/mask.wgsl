@@ -23,6 +23,9 @@ override LOOKS_AROUND: bool = true;
 // Luma that is added to the local mean: what a dark picture's contrast is relative to (Weber's law
 // fails there).
 const DARK: f32 = 0.1;
+// Bit of a requested rate besides those of `rates.wgsl`: content asks for a block where the block's
+// pixels are alike.
+const ASKS_IF_ALIKE: u32 = 8u;
 // Least cosine between normals of what counts as one plane.
 const FLAT: f32 = 0.9;
 
@@ -102,11 +105,11 @@ fn content_rate(quad: vec2u, lumas: vec4f, motion: vec2f) -> u32 {
     let contrast = contrast_of(vec2i(quad), lumas);
     let threshold = rates.threshold * (1.0 + rates.velocity_gain * length(motion));
     let coarse = vec2u(contrast <= vec2f(threshold));
-    return coarse.x | (coarse.y << 1u);
+    return coarse.x | (coarse.y << 1u) | (ASKS_IF_ALIKE * coarse.x * coarse.y);
 }
 
 fn rate_of_level(level: u32) -> u32 {
-    return select(select(0u, 3u, level >= 1u), 7u, level >= 2u);
+    return select(select(0u, 3u, level >= 1u), 7u | ASKS_IF_ALIKE, level >= 2u);
 }
 
 fn rate_from(source: u32, quad: vec2u, lumas: vec4f, motion: vec2f) -> u32 {
@@ -206,7 +209,7 @@ var<workgroup> found_unknown: atomic<u32>;
 fn is_block(picture: Picture, maps: EyeMaps, quad: vec2u, local: vec2u) -> bool {
     let first = (local.y & 6u) * 8u + (local.x & 6u);
     let others = array(first, first + 1u, first + 8u, first + 9u);
-    var together = 7u;
+    var together = RATE | ASKS_IF_ALIKE;
     var range = tile_range[first];
     var same = true;
     var flat = true;
@@ -225,7 +228,7 @@ fn is_block(picture: Picture, maps: EyeMaps, quad: vec2u, local: vec2u) -> bool 
     let lower = normal_of(vec2f(d.w - d.z, d.w - d.y) / step, on_plane(maps, picture, texel + 2u), d.w);
     flat = flat && are_parallel(tile_normal[first], upper) && are_parallel(tile_normal[first], lower);
     let alike = range.y - range.x <= rates.threshold * (0.5 * (range.x + range.y) + DARK);
-    let wanted = (together & RATE_BLOCK) != 0u || (together == 3u && alike);
+    let wanted = (together & RATE_BLOCK) != 0u || ((together & ASKS_IF_ALIKE) != 0u && alike);
     return same && wanted && (together & 3u) == 3u && (flat || tile_who[first] == 0u);
 }
 
@@ -270,7 +273,7 @@ fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
             // A level of 2 and more asks for blocks; they are found below.
             let shown = shown_by(picture, maps, first, last, ids, depths);
             normal = shown.normal;
-            rate &= shown.limit | RATE_BLOCK;
+            rate &= shown.limit | RATE_BLOCK | ASKS_IF_ALIKE;
             rate = select(rate & 3u, rate, (rate & 3u) == 3u);
         }
     }

@@ -168,6 +168,35 @@ fn foveation_and_content_combine_to_the_coarser_or_finer_rate() {
 }
 
 #[test]
+fn blocks_are_only_where_sources_ask_for_them() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    let blocks = |source, level, other: Option<RateCombine>| {
+        let settings = variable(SIZES[0]).with(|s| {
+            s.coarse.source = source;
+            s.coarse.constant_level = level;
+            s.coarse.other_source = RateSource::Content;
+            s.coarse.combine = other.unwrap_or(RateCombine::First);
+            s.variable.blocks_4x4 = true;
+        });
+        let mut film = Film::new(&scene, &settings);
+        film.draw(camera);
+        film.draw(camera);
+        film.mask().iter().filter(|&&m| m & 7 == 7).count()
+    };
+    let content = blocks(RateSource::Content, 0, None);
+    assert!(content > 0);
+    assert_eq!(blocks(RateSource::Constant, 1, None), 0);
+    assert_eq!(blocks(RateSource::Constant, 1, Some(RateCombine::Finer)), 0);
+    assert!(blocks(RateSource::Constant, 2, None) > content);
+    assert_eq!(
+        blocks(RateSource::Constant, 2, Some(RateCombine::Finer)),
+        content
+    );
+    assert!(blocks(RateSource::Constant, 1, Some(RateCombine::Coarser)) >= content);
+}
+
+#[test]
 fn each_sample_fills_its_pixels_and_single_pixels_are_full_shading() {
     let scene = scene();
     let camera = &scene.cameras[0];

@@ -16,6 +16,8 @@ pub(super) struct Seen {
     pub(super) depth: Vec<f32>,
 }
 
+/// Content asks for a block where its pixels are alike: a bit of requested rates.
+const IF_ALIKE: u32 = 8;
 /// The constants of the shaders.
 const DARK: f32 = 0.1;
 const FLAT: f32 = 0.9;
@@ -248,7 +250,7 @@ pub(super) fn rates(
     let eyes = crate::stereo::eyes(settings, camera).unwrap();
     let request = RequestUniform::new(settings, &eyes, None);
     let each = || (0..quads.y).flat_map(|y| (0..quads.x).map(move |x| UVec2::new(x, y)));
-    let of_level = |level: u32| [0, 3, 7][level.min(2) as usize];
+    let of_level = |level: u32| [0, 3, 7 | IF_ALIKE][level.min(2) as usize];
     let single: Vec<(u32, u32)> = each()
         .map(|quad| {
             let cell = known[(quad.y * quads.x + quad.x) as usize];
@@ -276,7 +278,9 @@ pub(super) fn rates(
                     let threshold = settings.variable.threshold
                         * (1.0 + settings.variable.velocity_gain * motion);
                     let c = contrast(settings.variable.contrast, known, quads, quad);
-                    u32::from(c.x <= threshold) | u32::from(c.y <= threshold) << 1
+                    let (wide, tall) = (c.x <= threshold, c.y <= threshold);
+                    let if_alike = if wide && tall { IF_ALIKE } else { 0 };
+                    u32::from(wide) | u32::from(tall) << 1 | if_alike
                 }
             };
             let requested = match settings.coarse.combine {
@@ -288,7 +292,7 @@ pub(super) fn rates(
                     from(settings.coarse.source) & from(settings.coarse.other_source)
                 }
             };
-            let rate = requested & (surface_limit(seen, camera, quad * 2) | 4);
+            let rate = requested & (surface_limit(seen, camera, quad * 2) | 4 | IF_ALIKE);
             (if rate & 3 == 3 { rate } else { rate & 3 }, 0)
         })
         .collect();
@@ -304,14 +308,16 @@ pub(super) fn rates(
                 let quad = UVec2::new(i as u32 % quads.x, i as u32 / quads.x);
                 seen.identity[seen.at(quad * 2)][0]
             };
-            let together = block.iter().fold(7, |rates, &i| rates & single[i].0);
+            let together = block
+                .iter()
+                .fold(7 | IF_ALIKE, |rates, &i| rates & single[i].0);
             let all = block.iter().flat_map(|&i| lumas(known[i][0]).to_array());
             let (low, high) = all.fold((1.0f32, 0.0f32), |(l, h), v| (l.min(v), h.max(v)));
             let alike = high - low <= settings.variable.threshold * (0.5 * (low + high) + DARK);
             let is_block = settings.variable.blocks_4x4
                 && block.len() == 4
                 && block.iter().all(|&i| who(i) == who(block[0]))
-                && (together & 4 != 0 || together == 3 && alike)
+                && (together & 4 != 0 || (together & IF_ALIKE != 0 && alike))
                 && together & 3 == 3
                 && block_is_flat(seen, camera, first * 2);
             if is_block {
