@@ -34,17 +34,38 @@ impl Pair {
     }
 }
 
+pub(super) fn benches(report: &Value) -> impl Iterator<Item = &Value> {
+    report["benches"].as_array().into_iter().flatten()
+}
+
+pub(super) fn rows(bench: &Value) -> impl Iterator<Item = &Value> {
+    bench["rows"].as_array().into_iter().flatten()
+}
+
+/// The bench of the same name.
+pub(super) fn same_bench<'r>(report: &'r Value, bench: &Value) -> Option<&'r Value> {
+    benches(report).find(|other| other["name"] == bench["name"])
+}
+
+/// The row of this bench that measures the same: by its label and, where it has them, its flags.
+pub(super) fn same_row<'r>(bench: &'r Value, row: &Value) -> Option<&'r Value> {
+    let is_same = |other: &&Value| ["label", "flags"].iter().all(|&key| other[key] == row[key]);
+    rows(bench).find(is_same)
+}
+
+pub(super) fn text(value: &Value) -> &str {
+    value.as_str().unwrap_or_default()
+}
+
 /// All times that both reports have.
 pub(super) fn pairs(old: &Value, new: &Value) -> Vec<Pair> {
     let mut pairs = Vec::new();
-    for bench in new["benches"].as_array().into_iter().flatten() {
-        let mut before = old["benches"].as_array().into_iter().flatten();
-        let Some(before) = before.find(|b| b["name"] == bench["name"]) else {
+    for bench in benches(new) {
+        let Some(before) = same_bench(old, bench) else {
             continue;
         };
-        for row in bench["rows"].as_array().into_iter().flatten() {
-            let mut rows = before["rows"].as_array().into_iter().flatten();
-            let Some(old_row) = rows.find(|r| r["label"] == row["label"]) else {
+        for row in rows(bench) {
+            let Some(old_row) = same_row(before, row) else {
                 continue;
             };
             for key in row.as_object().into_iter().flatten().map(|(key, _)| key) {
@@ -55,10 +76,9 @@ pub(super) fn pairs(old: &Value, new: &Value) -> Vec<Pair> {
                     // Neither report has the stage.
                     && (old_ms > 0.0 || new_ms > 0.0)
                 {
-                    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
                     pairs.push(Pair {
-                        bench: text(&bench["name"]),
-                        row: text(&row["label"]),
+                        bench: text(&bench["name"]).to_owned(),
+                        row: text(&row["label"]).to_owned(),
                         figure: key.clone(),
                         old_ms,
                         new_ms,
@@ -151,6 +171,14 @@ mod tests {
             row["label"] = "r".into();
             json!({ "benches": [{ "name": "a", "rows": [row] }] })
         })
+    }
+
+    #[test]
+    fn rows_of_one_label_are_compared_where_they_have_the_same_flags() {
+        let row = |flags: &str| json!({ "flags": flags, "chosen_ms": 10.0 });
+        let [old, new] = reports([row("--a 1"), row("--a 1 --b 2")]);
+        assert!(pairs(&old, &new).is_empty());
+        assert_eq!(pairs(&old, &old).len(), 1);
     }
 
     #[test]
