@@ -5,6 +5,7 @@
 //! difference. Where a bench makes one pass, the intervals of its ratios to the plain frame take
 //! the passes' place.
 
+mod notes;
 mod page;
 mod pairs;
 
@@ -15,6 +16,7 @@ use serde_json::Value;
 
 use crate::table::text;
 use foveal_host::{atomic_file, console};
+use notes::{failures, notes};
 use pairs::{Change, Pair, pairs};
 
 /// Arguments of `foveal bench diff`.
@@ -24,7 +26,7 @@ pub struct Args {
     old: PathBuf,
     /// The later report.json
     new: PathBuf,
-    /// Exit with code 1 if anything became slower
+    /// Exit with code 1 if anything became slower, or a bench fails that did not fail before
     #[arg(long)]
     fail: bool,
     /// Write the comparison as a page: first what changed, then each bench
@@ -44,10 +46,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         atomic_file::write(file, difference.page.as_bytes())?;
     }
     console::print_result(&difference.said)?;
-    if args.fail && difference.slower > 0 {
-        bail!("{} times became slower", difference.slower);
+    match (difference.slower, difference.failed) {
+        (0, 0) => Ok(()),
+        _ if !args.fail => Ok(()),
+        (slower, 0) => bail!("{slower} times became slower"),
+        (slower, failed) => bail!("{slower} times became slower, {failed} benches failed"),
     }
-    Ok(())
 }
 
 /// What changed between the texts of two reports: as text, and as a page.
@@ -64,6 +68,8 @@ struct Difference {
     said: String,
     page: String,
     slower: usize,
+    /// Benches that did not fail before.
+    failed: usize,
 }
 
 impl Difference {
@@ -94,15 +100,25 @@ impl Difference {
             );
         }
         said += &table(&pairs);
+        let quoted = names.map(|name| format!("'{name}'"));
+        for note in notes([old, new], [&quoted[0], &quoted[1]]) {
+            said += &format!("{note}\n");
+        }
+        let failed = failures(old, new);
         said += &format!(
-            "{} times compared: {slower} slower, {faster} faster, {} within the noise\n",
+            "{} times compared: {slower} slower, {faster} faster, {} within the noise",
             pairs.len(),
             pairs.len() - slower - faster
         );
+        said += &match failed {
+            0 => "\n".to_owned(),
+            _ => format!("; {failed} benches failed that did not before\n"),
+        };
         Ok(Self {
             said,
             page: console::printable_lines(&page::of(old, new, &pairs)),
             slower,
+            failed,
         })
     }
 }
@@ -148,4 +164,52 @@ fn parse(text: &str) -> anyhow::Result<Value> {
         bail!("it is no report of 'foveal bench all'");
     }
     Ok(report)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn report(benches: &Value) -> Value {
+        json!({ "schema": "foveal-report", "benches": benches })
+    }
+
+    fn measured(name: &str, rows: &[(&str, &str)]) -> Value {
+        let row =
+            |&(label, flags): &(&str, &str)| json!({ "label": label, "flags": flags, "ms": 5.0 });
+        let rows: Vec<Value> = rows.iter().map(row).collect();
+        json!({ "name": name, "status": "measured", "rows": rows })
+    }
+
+    #[test]
+    fn what_only_one_report_has_and_what_failed_is_listed() {
+        let failed = json!({ "name": "b", "status": "failed", "cause": "no memory", "rows": [] });
+        let old = report(&json!([
+            measured("a", &[("x", ""), ("together", "--p 1")]),
+            measured("b", &[("y", ""), ("z", "")]),
+        ]));
+        let new = report(&json!([
+            measured("a", &[("x", ""), ("together", "--q 1")]),
+            failed,
+            measured("c", &[("v", "")]),
+        ]));
+        let found = Difference::of(&old, &new, ["old.json", "new.json"]).unwrap();
+        for line in [
+            "failed in 'new.json': b: no memory\n",
+            "only in 'old.json': a, together (--p 1)\n",
+            "only in 'old.json': b, all 2 rows\n",
+            "only in 'new.json': a, together (--q 1)\n",
+            "only in 'new.json': c, v\n",
+            "; 1 benches failed that did not before\n",
+        ] {
+            assert!(found.said.contains(line), "{line}: {}", found.said);
+        }
+        assert!(found.page.contains("a, together (--p 1)"), "{}", found.page);
+        assert_eq!((found.slower, found.failed), (0, 1));
+        // What failed before as well is no change.
+        let found = Difference::of(&new, &new, ["old.json", "new.json"]).unwrap();
+        assert_eq!(found.failed, 0);
+        assert!(!found.said.contains("only in"), "{}", found.said);
+    }
 }

@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 use serde_json::Value;
 
+use super::notes::notes;
 use super::pairs::{Change, Pair};
 use crate::report::html;
 
@@ -20,6 +21,7 @@ pub(super) fn of(old: &Value, new: &Value, pairs: &[Pair]) -> String {
     benches.dedup();
     let of_bench =
         |bench: &str| -> Vec<&Pair> { pairs.iter().filter(|pair| pair.bench == bench).collect() };
+    let notes = notes([old, new], ["the old report", "the new report"]);
     let body = html! {
         h1 { "Two reports" }
         p {
@@ -40,6 +42,14 @@ pub(super) fn of(old: &Value, new: &Value, pairs: &[Pair]) -> String {
                 p { "No time changed beyond the noise." }
             } @else {
                 (table(&changed))
+            }
+        }
+        @if !notes.is_empty() {
+            section {
+                h2 { "What cannot be compared" }
+                @for note in notes {
+                    p { (note) }
+                }
             }
         }
         @for bench in benches {
