@@ -196,8 +196,16 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
 
 /// The ways that work on this device, and those that do not.
 fn usable(gpu: &Gpu) -> anyhow::Result<(Vec<Named>, Vec<Skipped>)> {
+    let features = gpu.device.features();
+    let has_clip = features.contains(wgpu::Features::CLIP_DISTANCES) && !gpu.is_reduced();
     let (mut ways, mut skipped) = (Vec::new(), Vec::new());
     for (mode, stereo, eye_clipping) in WAYS {
+        if eye_clipping == EyeClipping::Clip && !has_clip {
+            // The renderer discards there.
+            let cause = "the device has no clip distances".to_owned();
+            skipped.push(Skipped { mode, cause });
+            continue;
+        }
         let settings = Settings::default().with(|s| {
             s.picture.width = 16;
             s.picture.height = 16;
@@ -353,4 +361,26 @@ fn summary(report: &Report) -> String {
         report.width, report.height, report.adapter.name, report.rounds
     ) + &text(&lines)
         + &notes.concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_device_without_clip_distances_is_not_measured_with_them() {
+        let instance = wgpu::Instance::default();
+        let adapter = block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
+        let descriptor = wgpu::DeviceDescriptor {
+            required_limits: Gpu::required_limits(),
+            ..wgpu::DeviceDescriptor::default()
+        };
+        let (device, queue) = block_on(adapter.unwrap().request_device(&descriptor)).unwrap();
+        let (ways, skipped) = usable(&Gpu::from_device(device, queue)).unwrap();
+        let names: Vec<&str> = ways.iter().map(|way| way.0).collect();
+        assert_eq!(names, ["mono", "two-pass", "instanced + discard"]);
+        let named: Vec<&str> = skipped.iter().map(|way| way.mode).collect();
+        assert_eq!(named, ["instanced + clip", "multiview"]);
+        assert!(skipped.iter().all(|way| !way.cause.is_empty()));
+    }
 }
