@@ -130,6 +130,11 @@ pub(super) const THE_SCENE: &str = "SCENE";
 /// The bench that the first page is made of.
 pub(super) const VERDICT: &str = "verdict";
 
+/// A word of a command, or the scene where it stands for that.
+fn named<'a>(word: &'a str, scene: &'a str) -> &'a str {
+    if word == THE_SCENE { scene } else { word }
+}
+
 impl Bench {
     /// How many passes are made where all others make `passes`: some draw their sides in turn, and
     /// have intervals of their own.
@@ -152,15 +157,25 @@ impl Bench {
         if self.sized {
             words.extend(["--size".to_owned(), format!("{}x{}", size.0, size.1)]);
         }
-        let own = if quick { self.quick } else { self.full };
-        let named = |word| if word == THE_SCENE { scene } else { word };
-        words.extend(own.iter().map(|&word| named(word).to_owned()));
+        let own = self.own(quick).iter();
+        words.extend(own.map(|word| named(word, scene).to_owned()));
         if let Some(adapter) = adapter
             && self.subcommand != ["bench", "culling"]
         {
             words.extend(["--adapter".to_owned(), adapter.to_owned()]);
         }
         words
+    }
+
+    fn own(&self, quick: bool) -> &'static [&'static str] {
+        if quick { self.quick } else { self.full }
+    }
+
+    /// The scenes that it measures, which come before all flags.
+    pub(super) fn scenes<'a>(&self, scene: &'a str, quick: bool) -> Vec<&'a str> {
+        let own = self.own(quick).iter();
+        let scenes = own.take_while(|word| !word.starts_with("--"));
+        scenes.map(|word| named(word, scene)).collect()
     }
 
     /// The command as a user types it.

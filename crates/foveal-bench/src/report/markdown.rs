@@ -10,7 +10,7 @@ use super::plan::BENCHES;
 /// File names and their texts.
 pub(super) fn of(report: &Value) -> Vec<(String, String)> {
     let mut index = format!(
-        "# Benchmarks\n{}\n\nMade by `./run benchmarks`; nothing here is written by hand.\n\n| bench | |\n|---|---|\n",
+        "# Benchmarks\n{} Each page says which scenes it measured.\n\nMade by `./run benchmarks`; nothing here is written by hand.\n\n| bench | |\n|---|---|\n",
         measured_on(report)
     );
     let mut files = Vec::new();
@@ -34,15 +34,10 @@ pub(super) fn of(report: &Value) -> Vec<(String, String)> {
     files
 }
 
-/// The machine, the scene and the program's state, as one paragraph.
+/// The machine and the program's state, in two sentences.
 fn measured_on(report: &Value) -> String {
-    let quick = if report["quick"] == true {
-        ", few repetitions"
-    } else {
-        ""
-    };
     format!(
-        "Measured on {}, {} threads, {}; {} ({}, {}). Foveal {}, {}. The scene {} at {} x {} pixels, {} passes{quick}.",
+        "Measured on {}, {} threads, {}; {} ({}, {}). Foveal {}, {}.",
         text(&report["machine"]["processor"]),
         report["machine"]["threads"],
         text(&report["machine"]["system"]),
@@ -51,19 +46,41 @@ fn measured_on(report: &Value) -> String {
         text(&report["adapter"]["driver"]),
         text(&report["program_version"]),
         report["of"].as_str().unwrap_or("commit not named"),
-        text(&report["scene"]),
-        report["width"],
-        report["height"],
-        report["passes"],
     )
+}
+
+/// What a bench measured, as a sentence.
+fn measured(report: &Value, bench: &Bench) -> String {
+    let is_quick = report["quick"] == true;
+    let scenes = bench.scenes(text(&report["scene"]), is_quick);
+    let scenes = match scenes.as_slice() {
+        [one] => format!("scene {one}"),
+        [most @ .., last] => format!("scenes {} and {last}", most.join(", ")),
+        [] => String::new(),
+    };
+    let size = format!("{} x {} pixels", report["width"], report["height"]);
+    let size = match bench.name {
+        _ if !bench.sized => String::new(),
+        // Displays with fewer pixels are drawn whole.
+        "eye" => format!(" at up to {size}"),
+        _ => format!(" at {size}"),
+    };
+    let passes = report["passes"].as_u64().unwrap_or_default() as usize;
+    let passes = match bench.passes(passes) {
+        1 => "1 pass".to_owned(),
+        several => format!("{several} passes"),
+    };
+    let quick = if is_quick { ", few repetitions" } else { "" };
+    format!("The {scenes}{size}, {passes}{quick}.")
 }
 
 fn page(report: &Value, bench: &Bench, found: &Value) -> String {
     let mut page = format!(
-        "# {}\n{}\n\n{}\n\n",
+        "# {}\n{}\n\n{} {}\n\n",
         bench.title,
         bench.about,
-        measured_on(report)
+        measured_on(report),
+        measured(report, bench)
     );
     page += "Figures are medians; the range of the passes follows where they differ.\n\n";
     let titles: Vec<&str> = bench.columns.iter().map(|column| column.title).collect();

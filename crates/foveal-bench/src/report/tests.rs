@@ -240,6 +240,26 @@ fn the_markdown_has_a_file_per_measured_bench_and_says_what_was_measured() {
         baseline.contains("| unit0, stage1 | 2469.89 (2469.14 to 2470.64) |"),
         "{baseline}"
     );
+    // Each says what it measured itself.
+    assert!(baseline.contains("The scene cornell at 480 x 270 pixels, 2 passes."));
+    for (name, said) in [
+        (
+            "verdict.md",
+            "The scene cornell at 480 x 270 pixels, 1 pass.",
+        ),
+        (
+            "eye.md",
+            "The scene cornell at up to 480 x 270 pixels, 1 pass.",
+        ),
+        ("culling.md", "The scene cornell, 2 passes."),
+        (
+            "culling-load.md",
+            "The scenes demo:1000, demo:3000, demo:10000 and demo:30000, 2 passes.",
+        ),
+    ] {
+        let text = file(name).unwrap();
+        assert!(text.contains(said), "{text}");
+    }
     // Every row of a table has as many cells as its head.
     for (name, text) in &files {
         let mut cells = text
