@@ -46,7 +46,7 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::point_lights)]
     point_lights: u32,
 
-    /// Measured frames of each candidate, after eight that warm up; below 10 there is no verdict
+    /// Measured frames of each candidate, after sixteen that warm up; below 10 there is no verdict
     #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u32).range(1..=200))]
     rounds: u32,
 }

@@ -10,6 +10,11 @@ use pollster::block_on;
 use super::decision::{Found, Measured};
 use crate::subject::{Subject, WARM_UP, swayed, timed_renderer};
 
+/// Frames that are drawn before any is timed. After the first eight, shading at rates is compared
+/// with shading in full, in three frames that shade in both ways; where it does not pay, it is off
+/// from then on.
+const UNTIMED: u32 = 16;
+
 /// One of those that are drawn in turn.
 struct Side {
     renderer: Renderer,
@@ -52,7 +57,7 @@ pub(super) fn measure(
     let count = sides.iter().flatten().count() + 1;
     // The camera sways, as a head does: what is kept from frame to frame costs nothing at rest.
     let at = |frame: u32| swayed(camera, frame);
-    for frame in 1..=WARM_UP {
+    for frame in 1..=UNTIMED {
         plain.draw(&at(frame), &at(frame - 1))?;
         for side in sides.iter_mut().flatten() {
             side.draw(&at(frame), &at(frame - 1))?;
@@ -64,7 +69,7 @@ pub(super) fn measure(
     }
     let processor_draws = gpu.adapter_stats().kind == "cpu";
     for round in 0..rounds {
-        let frame = WARM_UP + 1 + round;
+        let frame = UNTIMED + 1 + round;
         let [now, before] = [at(frame), at(frame - 1)];
         for number in turn(u64::from(round), count) {
             match number.checked_sub(1) {
@@ -162,7 +167,36 @@ fn process_ms() -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::verdict::candidates::candidates_of;
     use foveal::CoarseStats;
+
+    #[test]
+    fn no_frame_that_is_timed_compares_shading_at_rates_with_shading_in_full() {
+        let gpu = foveal_host::gpu::open(None).unwrap();
+        let mut scene = foveal_generate::cornell();
+        scene.light_by_default();
+        let plain = Settings::default().with(|s| {
+            s.picture.width = 64;
+            s.picture.height = 48;
+        });
+        for (candidate, settings) in candidates_of(&plain).unwrap() {
+            let mut renderer = timed_renderer(&gpu, &scene, &settings).unwrap();
+            let mut compared = Vec::new();
+            for frame in 1..=UNTIMED + 20 {
+                let [now, before] = [frame, frame - 1].map(|f| swayed(&scene.cameras[0], f));
+                let frame_of = Frame::new(&now).with_previous(&before);
+                let stats = block_on(renderer.render(&frame_of)).unwrap();
+                if stats.gpu_ms.iter().any(|t| t.name.starts_with("full ")) {
+                    compared.push(frame);
+                }
+            }
+            let name = candidate.name;
+            assert!(
+                compared.iter().all(|&f| f <= UNTIMED),
+                "{name}: {compared:?}"
+            );
+        }
+    }
 
     #[test]
     fn a_technique_that_says_something_is_not_off_for_that() {
