@@ -53,7 +53,8 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
 
-    /// Sub-samples of the SSAA picture that serves as the reference; 0: no reference
+    /// Sub-samples of the SSAA picture that serves as the reference; where the device cannot draw so
+    /// many at this size, the largest square number that it can. 0: no reference
     #[arg(long, value_name = "N", default_value_t = 64)]
     reference: u32,
 }
@@ -101,6 +102,8 @@ struct Row {
     /// Mean FLIP error against SSAA on a 2 x 2 grid, and against the reference.
     flip_to_ssaa: f64,
     flip_to_reference: Option<f64>,
+    /// Sub-samples of the reference.
+    reference_samples: Option<u32>,
     /// The same in JOD at 60 degrees across, gaze in the centre: 10 is no visible difference.
     jod_to_ssaa: Option<f32>,
     jod_to_reference: Option<f32>,
@@ -174,6 +177,32 @@ fn modes(base: &Settings) -> Vec<Settings> {
     .to_vec()
 }
 
+/// The settings of the reference, before anything is measured: of `samples` sub-samples, or of the
+/// largest square number that a device with these limits can draw. `None` for 0.
+fn reference_of(
+    base: &Settings,
+    samples: u32,
+    limits: &wgpu::Limits,
+) -> Result<Option<Settings>, foveal::Error> {
+    if samples == 0 {
+        return Ok(None);
+    }
+    let of = |samples| {
+        base.clone().with(|s| {
+            s.antialiasing.mode = Antialiasing::Ssaa;
+            s.antialiasing.samples = samples;
+        })
+    };
+    let error = match of(samples).validate(limits) {
+        Ok(()) => return Ok(Some(of(samples))),
+        Err(error @ foveal::Error::Limit { .. }) => error,
+        Err(error) => return Err(error),
+    };
+    let fewer = (2..samples.isqrt()).rev().map(|side| of(side * side));
+    let mut fitting = fewer.filter(|settings| settings.validate(limits).is_ok());
+    fitting.next().map(Some).ok_or(error)
+}
+
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let subject = args.subject.open(args.point_lights)?;
@@ -199,6 +228,8 @@ fn rows(
     Subject { gpu, scene, camera }: &Subject,
     base: &Settings,
 ) -> anyhow::Result<Vec<Row>> {
+    let limits = gpu.device.limits();
+    let reference = reference_of(base, args.reference, &limits)?;
     let mut modes = modes(base)
         .iter()
         .map(|settings| Mode::new(gpu, scene, settings))
@@ -211,22 +242,20 @@ fn rows(
             modes[number].draw(camera, true)?;
         }
     }
-    let reference = if args.reference > 0 {
-        let settings = base.clone().with(|s| {
-            s.antialiasing.mode = Antialiasing::Ssaa;
-            s.antialiasing.samples = args.reference;
-        });
-        let mut mode = Mode::new(gpu, scene, &settings)?;
-        mode.draw(camera, false)?;
-        mode.picture
-    } else {
-        None
+    let reference = match reference {
+        Some(settings) => {
+            let mut mode = Mode::new(gpu, scene, &settings)?;
+            mode.draw(camera, false)?;
+            let samples = settings.antialiasing.samples;
+            mode.picture.map(|picture| (samples, picture))
+        }
+        None => None,
     };
     let pictures: Vec<_> = modes.iter_mut().filter_map(|m| m.picture.take()).collect();
     Ok((modes.iter().zip(&pictures).enumerate())
         .map(|(number, (mode, picture))| {
             let near = |reference: &Picture| Nearness::of(reference, picture);
-            let reference = reference.as_ref().map(near);
+            let reference = (reference.as_ref()).map(|(samples, of)| (*samples, near(of)));
             // Each is compared with none by the same geometry.
             let geometry = mode.renderer.settings().geometry.path;
             let same = |m: &Mode| m.renderer.settings().geometry.path == geometry;
@@ -276,7 +305,7 @@ impl Mode {
         scene: &str,
         compared: &dyn Fn(fn(&Times) -> f64) -> Option<Comparison>,
         to_ssaa: Nearness,
-        to_reference: Option<Nearness>,
+        to_reference: Option<(u32, Nearness)>,
     ) -> Row {
         let settings = self.renderer.settings();
         let frame = compared(|t| t.frame_ms);
@@ -306,9 +335,10 @@ impl Mode {
             finding: frame.map_or(Finding::TooFew, |frame| frame.finding),
             shade_ratio: compared(|t| t.shade_ms).map(|shade| shade.ratio),
             flip_to_ssaa: to_ssaa.flip,
-            flip_to_reference: to_reference.map(|near| near.flip),
+            flip_to_reference: to_reference.map(|(_, near)| near.flip),
+            reference_samples: to_reference.map(|(samples, _)| samples),
             jod_to_ssaa: to_ssaa.jod,
-            jod_to_reference: to_reference.and_then(|near| near.jod),
+            jod_to_reference: to_reference.and_then(|(_, near)| near.jod),
         }
     }
 }
@@ -369,7 +399,7 @@ fn summary(report: &Report) -> String {
     }
     let about = report.rows.first().map_or(String::new(), |row| {
         format!(
-            "{} at {}x{}, {} point lights added, {}, {}, {}, medians of {} rounds\n",
+            "{} at {}x{}, {} point lights added, {}, {}, {}, medians of {} rounds{}\n",
             report.header.scene,
             row.width,
             row.height,
@@ -377,8 +407,37 @@ fn summary(report: &Report) -> String {
             name_of(report.lights),
             name_of(report.lighting),
             report.header.adapter.name,
-            report.rounds
+            report.rounds,
+            row.reference_samples
+                .map_or(String::new(), |samples| format!(
+                    ", reference of {samples} sub-samples"
+                ))
         )
     });
     about + &text(&lines)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_reference_has_as_many_sub_samples_as_the_device_can_draw() {
+        let limits = wgpu::Limits {
+            max_texture_dimension_2d: 16_384,
+            ..wgpu::Limits::default()
+        };
+        let samples = |size: (u32, u32), wanted| {
+            let base = Settings::default().with(|s| (s.picture.width, s.picture.height) = size);
+            let reference = reference_of(&base, wanted, &limits)?;
+            Ok::<_, foveal::Error>(reference.map(|s| s.antialiasing.samples))
+        };
+        assert_eq!(samples((1920, 1080), 64).unwrap(), Some(64));
+        assert_eq!(samples((2560, 1440), 64).unwrap(), Some(36));
+        assert_eq!(samples((2560, 1440), 16).unwrap(), Some(16));
+        assert_eq!(samples((2560, 1440), 0).unwrap(), None);
+        // Nothing is measured where no reference can be.
+        assert!(samples((10_000, 100), 64).is_err());
+        assert!(samples((1920, 1080), 50).is_err());
+    }
 }

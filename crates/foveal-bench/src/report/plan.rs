@@ -405,6 +405,7 @@ pub(super) const BENCHES: &[Bench] = &[
             column("frame_ratio_high", "at most", 2),
             column("shade_ratio", "none / shade", 2),
             column("flip_to_ssaa", "FLIP to ssaa", 4),
+            column("reference_samples", "reference samples", 0),
             column("flip_to_reference", "FLIP to reference", 4),
             column("jod_to_reference", "JOD to reference", 2),
         ],
