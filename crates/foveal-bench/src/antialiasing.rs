@@ -13,6 +13,7 @@ use serde::Serialize;
 use super::subject::{Header, Subject, SubjectArgs, timed_renderer};
 use super::table::{jod_text, name_of, number_text, passes_ms, text};
 use foveal_host::difference::Nearness;
+use foveal_host::drawing::draw_with_room;
 use foveal_host::picture::Picture;
 use foveal_host::values;
 use foveal_host::values::VariantParser;
@@ -48,7 +49,7 @@ pub struct Args {
     #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
     lighting: Option<LightingModel>,
 
-    /// Frames of each mode, after one that warms up; figures are their medians. Below 10 there is
+    /// Frames of each mode, after those that warm up; figures are their medians. Below 10 there is
     /// no interval
     #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
@@ -235,17 +236,18 @@ fn rows(
         .map(|settings| Mode::new(gpu, scene, settings))
         .collect::<anyhow::Result<Vec<_>>>()?;
     for mode in &mut modes {
-        mode.draw(camera, false)?;
+        mode.warm_up(camera)?;
     }
     for round in 0..u64::from(args.rounds) {
         for number in turn(round, modes.len()) {
-            modes[number].draw(camera, true)?;
+            let stats = modes[number].draw(camera)?;
+            modes[number].rounds.push(Times::of(&stats));
         }
     }
     let reference = match reference {
         Some(settings) => {
             let mut mode = Mode::new(gpu, scene, &settings)?;
-            mode.draw(camera, false)?;
+            mode.warm_up(camera)?;
             let samples = settings.antialiasing.samples;
             mode.picture.map(|picture| (samples, picture))
         }
@@ -280,19 +282,17 @@ impl Mode {
         })
     }
 
-    /// Draws one frame; the first one's picture is kept.
-    fn draw(&mut self, camera: &Camera, measured: bool) -> anyhow::Result<()> {
-        let frame = Frame::new(camera);
-        self.last = block_on(self.renderer.render(&frame))?;
-        if measured {
-            self.rounds.push(Times::of(&self.last));
-        }
-        if self.picture.is_none() {
-            let bytes = block_on(self.renderer.read_picture())?;
-            let (width, height) = (self.last.width, self.last.height);
-            self.picture = Some(Picture::from_rgba(width, height, bytes)?);
-        }
+    /// Draws a picture that is kept, and makes room for its surfaces.
+    fn warm_up(&mut self, camera: &Camera) -> anyhow::Result<()> {
+        let FrameStats { width, height, .. } = draw_with_room(|| self.draw(camera))?;
+        let bytes = block_on(self.renderer.read_picture())?;
+        self.picture = Some(Picture::from_rgba(width, height, bytes)?);
         Ok(())
+    }
+
+    fn draw(&mut self, camera: &Camera) -> anyhow::Result<FrameStats> {
+        self.last = block_on(self.renderer.render(&Frame::new(camera)))?;
+        Ok(self.last.clone())
     }
 
     fn times(&self, figure: fn(&Times) -> f64) -> Vec<f64> {
@@ -418,26 +418,4 @@ fn summary(report: &Report) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_reference_has_as_many_sub_samples_as_the_device_can_draw() {
-        let limits = wgpu::Limits {
-            max_texture_dimension_2d: 16_384,
-            ..wgpu::Limits::default()
-        };
-        let samples = |size: (u32, u32), wanted| {
-            let base = Settings::default().with(|s| (s.picture.width, s.picture.height) = size);
-            let reference = reference_of(&base, wanted, &limits)?;
-            Ok::<_, foveal::Error>(reference.map(|s| s.antialiasing.samples))
-        };
-        assert_eq!(samples((1920, 1080), 64).unwrap(), Some(64));
-        assert_eq!(samples((2560, 1440), 64).unwrap(), Some(36));
-        assert_eq!(samples((2560, 1440), 16).unwrap(), Some(16));
-        assert_eq!(samples((2560, 1440), 0).unwrap(), None);
-        // Nothing is measured where no reference can be.
-        assert!(samples((10_000, 100), 64).is_err());
-        assert!(samples((1920, 1080), 50).is_err());
-    }
-}
+mod tests;

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use foveal::{Frame, FrameStats, RadianceImage, Renderer};
+use foveal::{Frame, FrameStats, RadianceImage, Renderer, Settings, Shading};
 use foveal_scene::Scene;
 use pollster::block_on;
 
@@ -14,6 +14,31 @@ pub fn moment(frame: u32, fps: f32) -> f32 {
     // In f64: exact for every frame number, so that the moment does not depend on how it was
     // reached.
     (f64::from(frame) / f64::from(fps)) as f32
+}
+
+/// Whether a frame's picture depends on the frames before.
+pub fn follows_on(settings: &Settings) -> bool {
+    match settings.shading.mode {
+        Shading::Full => false,
+        Shading::Variable => true,
+        Shading::Coarse => settings.coarse.history,
+    }
+}
+
+/// The figures of a frame that `draw` draws: again where anti-aliasing left surfaces out in want of
+/// room, which it has from then on.
+pub fn draw_with_room(
+    mut draw: impl FnMut() -> anyhow::Result<FrameStats>,
+) -> anyhow::Result<FrameStats> {
+    let mut figures = draw()?;
+    while figures.surfaces_left_out > 0 {
+        let before = figures.surfaces_left_out;
+        figures = draw()?;
+        if figures.surfaces_left_out >= before {
+            break;
+        }
+    }
+    Ok(figures)
 }
 
 /// Everything that one frame needs, ready.
@@ -56,6 +81,19 @@ impl Drawing {
         Ok(block_on(self.renderer.render(&frame))?)
     }
 
+    /// As [`Drawing::draw_moment`]; where the picture does not follow on from others, with room for
+    /// all of its surfaces, so that it does not depend on the frames before.
+    pub fn draw_picture(
+        &mut self,
+        time_s: f32,
+        previous_time_s: f32,
+    ) -> anyhow::Result<FrameStats> {
+        if follows_on(self.renderer.settings()) {
+            return self.draw_moment(time_s, previous_time_s);
+        }
+        draw_with_room(|| self.draw_moment(time_s, previous_time_s))
+    }
+
     /// The last frame.
     pub fn picture(&self, stats: &FrameStats) -> anyhow::Result<Picture> {
         let bytes = block_on(self.renderer.read_picture())?;
@@ -75,5 +113,26 @@ impl Drawing {
             self.posed_s = Some(time_s);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_is_drawn_again_while_that_makes_room() {
+        // (surfaces that each frame leaves out, frames that are drawn)
+        for (left_out, frames) in [(&[0][..], 1), (&[9, 0], 2), (&[9, 5, 0], 3), (&[9, 9], 2)] {
+            let mut drawn = left_out.iter();
+            let draw = || {
+                let mut stats = FrameStats::default();
+                stats.surfaces_left_out = *drawn.next().unwrap();
+                Ok(stats)
+            };
+            let last = draw_with_room(draw).unwrap().surfaces_left_out;
+            assert_eq!(last, left_out[frames - 1]);
+            assert_eq!(drawn.count(), 0);
+        }
     }
 }

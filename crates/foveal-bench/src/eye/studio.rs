@@ -54,7 +54,7 @@ impl<'a> Studio<'a> {
         }
         let mut drawing = self.drawing(settings, &self.at_rest)?;
         for _ in 0..warmup {
-            drawing.draw_moment(0.0, 0.0)?;
+            drawing.draw_picture(0.0, 0.0)?;
         }
         let shot = Rc::new(shoot(&mut drawing, &[0.0])?);
         self.stills.push((settings.clone(), Rc::clone(&shot)));
@@ -109,7 +109,7 @@ fn shoot(drawing: &mut Drawing, moments: &[f32]) -> anyhow::Result<Shot> {
     let mut lit = 0.0;
     let mut before_s = moments.first().copied().unwrap_or(0.0);
     for &time_s in moments {
-        let stats = drawing.draw_moment(time_s, before_s)?;
+        let stats = drawing.draw_picture(time_s, before_s)?;
         lit += lit_fraction(&stats);
         pictures.push(drawing.picture(&stats)?);
         before_s = time_s;

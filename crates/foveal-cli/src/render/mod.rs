@@ -21,7 +21,7 @@ use pollster::block_on;
 use foveal_host::camera::Viewpoint;
 use foveal_host::claims;
 use foveal_host::clock::{now_ms, now_ns, timed};
-use foveal_host::drawing::Drawing;
+use foveal_host::drawing::{Drawing, follows_on};
 use foveal_host::environment::environment;
 use foveal_host::linear_picture::{self, PictureFormat};
 use foveal_host::memory;
@@ -162,15 +162,6 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         console::note(&summary::text(&run, open - run.frames.len() as u64));
     }
     Ok(())
-}
-
-/// Whether a frame's picture depends on the frames before.
-fn follows_on(settings: &Settings) -> bool {
-    match settings.shading.mode {
-        foveal::Shading::Full => false,
-        foveal::Shading::Variable => true,
-        foveal::Shading::Coarse => settings.coarse.history,
-    }
 }
 
 /// The pictures to draw.
@@ -316,20 +307,9 @@ impl Written {
     }
 }
 
-/// Draws the picture that is so many frames before a moment: again where anti-aliasing left
-/// surfaces out in want of room, which it has from then on, so that the picture does not depend on
-/// the frames before.
+/// Draws the picture that is so many frames before a moment.
 fn draw(drawing: &mut Drawing, moment: Moment, frames: u32) -> anyhow::Result<FrameStats> {
-    let (time_s, previous_time_s) = (moment.before_s(frames), moment.before_s(frames + 1));
-    let mut figures = drawing.draw_moment(time_s, previous_time_s)?;
-    while figures.surfaces_left_out > 0 && !follows_on(drawing.renderer.settings()) {
-        let before = figures.surfaces_left_out;
-        figures = drawing.draw_moment(time_s, previous_time_s)?;
-        if figures.surfaces_left_out >= before {
-            break;
-        }
-    }
-    Ok(figures)
+    drawing.draw_picture(moment.before_s(frames), moment.before_s(frames + 1))
 }
 
 /// Draws and writes each frame; gives the figures and when the first picture was on the disk.
