@@ -103,7 +103,7 @@ struct Row {
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let subject = args.subject.open(args.point_lights)?;
     let plain = args.shared.plain(args.size)?;
-    let candidates = candidates_of(&plain)?;
+    let candidates = candidates_of(&plain, |pass| pass.resolved(&subject.gpu))?;
     let chosen: Vec<&Settings> = candidates.iter().map(|(_, settings)| settings).collect();
     let measured = measure(&subject, &plain, &chosen, args.rounds)?;
     let mut rows: Vec<Row> = candidates

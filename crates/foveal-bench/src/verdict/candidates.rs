@@ -1,6 +1,6 @@
 //! Which settings are tried, and how those that help are put together.
 
-use foveal::Settings;
+use foveal::{LightingPass, Settings};
 
 use crate::changes::{Changes, changed};
 use foveal_host::difference::BENCH_DISPLAY;
@@ -47,7 +47,7 @@ const ALL: &[Candidate] = &[
         "geometry",
         &[("geometry", "visibility")],
     ),
-    // Of these two one is what the plain picture has.
+    // Of these two one is what the plain picture has, and no candidate.
     faster(
         "Lighting by fragments",
         "lighting pass",
@@ -103,14 +103,21 @@ impl Candidate {
     }
 }
 
-/// The candidates and their settings, without those that change nothing in the plain ones.
+/// The candidates and their settings, without those that change nothing in the plain ones. `pass` is
+/// the kind of lighting pass that the device has for each.
 pub(super) fn candidates_of(
     plain: &Settings,
+    pass: impl Fn(LightingPass) -> LightingPass,
 ) -> anyhow::Result<Vec<(&'static Candidate, Settings)>> {
+    let drawn = |settings: &Settings| {
+        settings
+            .clone()
+            .with(|s| s.lighting.pass = pass(s.lighting.pass))
+    };
     let mut candidates = Vec::new();
     for candidate in ALL {
         let settings = candidate.settings(plain)?;
-        if settings != *plain {
+        if drawn(&settings) != drawn(plain) {
             candidates.push((candidate, settings));
         }
     }
@@ -140,7 +147,7 @@ mod tests {
     #[test]
     fn each_candidate_changes_something_that_is_possible() {
         let plain = Settings::default();
-        let candidates = candidates_of(&plain).unwrap();
+        let candidates = candidates_of(&plain, |pass| pass).unwrap();
         assert_eq!(candidates.len(), ALL.len());
         for (candidate, settings) in candidates {
             let checked = settings.validate(&wgpu::Limits::default());
@@ -151,9 +158,24 @@ mod tests {
     #[test]
     fn what_the_plain_frame_has_is_no_candidate() {
         let plain = changed(&Settings::default(), &[("aa", "msaa")]).unwrap();
-        let candidates = candidates_of(&plain).unwrap();
+        let candidates = candidates_of(&plain, |pass| pass).unwrap();
         assert_eq!(candidates.len(), ALL.len() - 1);
         assert!(candidates.iter().all(|(c, _)| c.aim == Aim::Faster));
+    }
+
+    #[test]
+    fn the_lighting_pass_that_the_device_has_anyway_is_no_candidate() {
+        use LightingPass::{Auto, Compute, Fragment};
+        for (auto, left) in [
+            (Fragment, "Lighting by compute"),
+            (Compute, "Lighting by fragments"),
+        ] {
+            let pass = |pass| if pass == Auto { auto } else { pass };
+            let candidates = candidates_of(&Settings::default(), pass).unwrap();
+            let names: Vec<&str> = candidates.iter().map(|(c, _)| c.name).collect();
+            assert_eq!(candidates.len(), ALL.len() - 1);
+            assert!(names.contains(&left), "{names:?}");
+        }
     }
 
     #[test]

@@ -179,7 +179,7 @@ mod tests {
             s.picture.width = 64;
             s.picture.height = 48;
         });
-        for (candidate, settings) in candidates_of(&plain).unwrap() {
+        for (candidate, settings) in candidates_of(&plain, |pass| pass).unwrap() {
             let mut renderer = timed_renderer(&gpu, &scene, &settings).unwrap();
             let mut compared = Vec::new();
             for frame in 1..=UNTIMED + 20 {

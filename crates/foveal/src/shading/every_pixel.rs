@@ -8,14 +8,22 @@ use crate::{LightingPass, Settings};
 /// Pixels on each side of a dispatch's workgroup.
 const TILE: u32 = 8;
 
+impl LightingPass {
+    /// The kind of pass that this is on a device: `Fragment` or `Compute`.
+    #[must_use]
+    pub fn resolved(self, gpu: &Gpu) -> Self {
+        match self {
+            Self::Compute if !gpu.is_reduced() => Self::Compute,
+            // docs/decisions/0256-lighting-by-compute.md.
+            Self::Auto if !gpu.is_reduced() && gpu.is_discrete() => Self::Compute,
+            _ => Self::Fragment,
+        }
+    }
+}
+
 /// Whether passes over every pixel are dispatched.
 pub(super) fn dispatches(gpu: &Gpu, settings: &Settings) -> bool {
-    match settings.lighting.pass {
-        LightingPass::Fragment => false,
-        LightingPass::Compute => !gpu.is_reduced(),
-        // docs/decisions/0256-lighting-by-compute.md.
-        LightingPass::Auto => !gpu.is_reduced() && gpu.is_discrete(),
-    }
+    settings.lighting.pass.resolved(gpu) == LightingPass::Compute
 }
 
 /// What a pass is made of.
