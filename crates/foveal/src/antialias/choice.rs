@@ -19,6 +19,11 @@ pub(crate) fn averages_all(settings: &Settings) -> bool {
             && settings.antialiasing.mode == Antialiasing::Msaa)
 }
 
+/// Whether pixels' means follow the rates of every frame.
+pub(crate) fn follows_rates(settings: &Settings) -> bool {
+    settings.antialiasing.mode != Antialiasing::None && !averages_all(settings)
+}
+
 /// Whether lobes are added to pixels in which their surfaces are black: where the pixel's colour is a
 /// mean of all its surfaces. Where it is that of the largest or of the first sub-sample they are laid
 /// over.

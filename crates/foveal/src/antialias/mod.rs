@@ -20,7 +20,7 @@ mod triangles;
 #[cfg(test)]
 mod twin;
 
-pub(crate) use choice::{adds_lobes, by_triangles, footprint};
+pub(crate) use choice::{adds_lobes, by_triangles, follows_rates, footprint};
 pub(crate) use limits::validate;
 #[cfg(test)]
 pub(crate) use pattern::BandUniform;

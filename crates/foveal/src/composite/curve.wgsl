@@ -27,7 +27,7 @@ fn curve(p: Patch, peak: vec2f, uv: vec2f, raise: vec3f, raise_x: vec3f, raise_y
         + raise_x * ((1.0 - slope.x) * tent.y)
         + raise_y * ((1.0 - slope.y) * tent.x)
         + raise * (slope.x * slope.y);
-    return max(radiance, vec3f(0.0));
+    return clamp(radiance, vec3f(0.0), vec3f(65504.0));
 }
 
 fn corners_of(block: vec2u, level: u32) -> Patch {

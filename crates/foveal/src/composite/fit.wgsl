@@ -153,7 +153,7 @@ fn corner_radiance(corner: vec2i, own: Tile, own_sample: vec4f, own_seen: Seen) 
     // Four samples around a corner enclose it: an affine fit stays between them, and others shall.
     // Past the border or an edge the fit runs on, but not away.
     let slack = select((most - least) * 1.5, vec3f(0.0), all_touch);
-    return clamp(fitted, max(least - slack, vec3f(0.0)), most + slack);
+    return clamp(fitted, max(least - slack, vec3f(0.0)), min(most + slack, vec3f(65504.0)));
 }
 
 // Where the tile to the right of one (`axis` 0) or below it has another size, nobody fits a patch

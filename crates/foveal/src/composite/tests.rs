@@ -1,10 +1,11 @@
 //! Composites on the device: exactness on affine radiance, and no mixing of surfaces.
 
 use foveal_generate as generate;
-use foveal_scene::{Camera, Scene};
+use foveal_scene::{Camera, Light, LightKind, Material, Scene};
 use glam::Vec3;
 
-use crate::testing::{f32_of_half, gpu, small, texels};
+use crate::forward::twin::quads;
+use crate::testing::{f32_of_half, gpu, rendered, small, texels};
 use crate::{CoarseSample, Composite, Frame, RateImage, RateSource, Renderer, Settings, Shading};
 
 /// A map of random patches, `side` across.
@@ -133,4 +134,44 @@ fn patches_too_large_for_the_device_are_an_error_that_says_so() {
     assert!(full_hd.validate(&limits).is_ok());
     let nearest = large.with(|s| s.coarse.composite = Composite::Nearest);
     assert!(nearest.validate(&limits).is_ok());
+}
+
+#[test]
+fn what_is_as_bright_as_a_half_holds_stays_bright_at_the_border() {
+    let material = Material {
+        metallic: 0.0,
+        ..Material::default()
+    };
+    let mut scene = quads(vec![material], &[0.0]);
+    scene.lights = vec![Light {
+        kind: LightKind::Point,
+        color: Vec3::ONE,
+        intensity: 3e4,
+        position: Vec3::new(-0.87, 0.0, 0.05),
+        direction: Vec3::NEG_Z,
+        range_m: Some(50.0),
+        node: None,
+    }];
+    let camera = Camera::look_at(Vec3::new(0.0, 0.0, 2.0), Vec3::ZERO, Vec3::Y, 0.92);
+    let settings = small(64, 64).with(|s| {
+        s.shading.mode = Shading::Coarse;
+        s.coarse.source = RateSource::Constant;
+        s.coarse.constant_level = 3;
+        s.coarse.composite = Composite::Smooth;
+        s.picture.exposure_stops = -15.0;
+    });
+    let drawn = rendered(&scene, &camera, &settings);
+    let radiance: Vec<[u16; 4]> = texels(&drawn.targets().radiance_view);
+    let at = |x: usize, y: usize| f32_of_half(radiance[y * 64 + x][0]);
+    assert!(
+        radiance
+            .iter()
+            .flatten()
+            .all(|&half| f32_of_half(half).is_finite())
+    );
+    let lit = at(4, 32);
+    assert!(lit > 20_000.0, "{lit}");
+    for x in 0..4 {
+        assert!(at(x, 32) >= 0.9 * lit, "{x}: {} beside {lit}", at(x, 32));
+    }
 }

@@ -249,7 +249,10 @@ impl Inputs {
         } else {
             (most - least) * 1.5
         };
-        (fitted / total).clamp((least - slack).max(Vec3::ZERO), most + slack)
+        (fitted / total).clamp(
+            (least - slack).max(Vec3::ZERO),
+            (most + slack).min(Vec3::splat(65504.0)),
+        )
     }
 
     fn corners(&self, tile: Tile) -> Corners {
@@ -326,7 +329,7 @@ impl Inputs {
             + raise(0) * ((1.0 - slope.x) * tent.y)
             + raise(1) * ((1.0 - slope.y) * tent.x)
             + (sample.radiance - bilinear(&corners, peak)) * (slope.x * slope.y);
-        radiance.max(Vec3::ZERO)
+        radiance.clamp(Vec3::ZERO, Vec3::splat(65504.0))
     }
 
     /// `smooth.wgsl`, `across_edge`.

@@ -405,7 +405,8 @@ impl Stages {
                     return;
                 };
                 let history = coarse.history.as_ref();
-                if history.is_none_or(HistoryStage::needs_rates) {
+                let smooths_by_rate = crate::antialias::follows_rates(settings);
+                if smooths_by_rate || history.is_none_or(HistoryStage::needs_rates) {
                     let eyes = (&seen.eyes, seen.lenses.as_ref());
                     let rate_map = &mut coarse.rate_map;
                     rate_map.draw(recorder, settings, eyes, gbuffer, &tiles.rate);

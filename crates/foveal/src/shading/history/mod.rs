@@ -12,7 +12,11 @@
 //! After a round the picture is full shading's to the bit, and nothing more is shaded.
 
 mod changed;
+#[cfg(test)]
+mod gaze_tests;
 mod lit;
+#[cfg(test)]
+mod moving_tests;
 mod passes;
 mod stage;
 mod targets;

@@ -46,15 +46,29 @@ const LEAST_RENEWAL: f32 = 1.0 / 512.0;
 // A coarse block is renewed at most by so many samples a frame.
 const MOST_A_BLOCK: f32 = 2.0;
 
-fn distance_before(texel: vec2u, position: vec3f) -> f32 {
+// Pixels between where a surface was and where it would have been at rest, from which on it has moved,
+// and what motion's half precision adds for each pixel.
+const MOVED: f32 = 0.125;
+const MOTION_ROUNDING: f32 = 1.0 / 512.0;
+
+// Clip space of a place in the frame before.
+fn clip_before(texel: vec2u, position: vec3f) -> vec4f {
     let left = frame.views[0].previous_clip_from_world;
     let right = frame.views[1].previous_clip_from_world;
-    let row = select(
-        vec4f(left[0].w, left[1].w, left[2].w, left[3].w),
-        vec4f(right[0].w, right[1].w, right[2].w, right[3].w),
-        view_of(texel) != 0u,
-    );
-    return dot(row, vec4f(position, 1.0));
+    let is_right = view_of(texel) != 0u;
+    let x = select(left[0], right[0], is_right);
+    let y = select(left[1], right[1], is_right);
+    let z = select(left[2], right[2], is_right);
+    let w = select(left[3], right[3], is_right);
+    return x * position.x + y * position.y + z * position.z + w;
+}
+
+// Whether a surface at `clip` in the frame before, if it was at rest, was at `before` in the target:
+// other light falls on what moves.
+fn has_moved(picture: Picture, clip: vec4f, before: vec2f, motion: vec2f) -> bool {
+    let at_rest = vec2f(picture.low) + (clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5) * frame.size;
+    let away = abs(before - at_rest) - MOTION_ROUNDING * abs(motion);
+    return max(away.x, away.y) > MOVED;
 }
 
 // What must agree for a memory to be that of a pixel's surface.
@@ -118,8 +132,7 @@ fn history_at(place: vec2i, texel: vec2u, picture: Picture, expected: Expected) 
 
 // The first place of the frame before that tells a pixel's light: the one that motion names, then the
 // other three of the four around it.
-fn remember(before: vec2f, texel: vec2u, expected: Expected, places: u32) -> Memory {
-    let picture = picture_of(texel);
+fn remember(before: vec2f, texel: vec2u, picture: Picture, expected: Expected, places: u32) -> Memory {
     let rounded = floor(before + told.rounding);
     let first = floor(before - 0.5);
     var memory = Memory(false, 0u, vec4u(0u), TileHistory(0.0, 0.0));
@@ -179,11 +192,15 @@ fn reprojected(texel: vec2u) -> Reprojected {
     let own = tile_at(texel);
     let s = unpack_surface(load_words(gbuffer_surface, texel), position);
     let who = load_words(gbuffer_identity, texel).xy;
-    let distance_then = select(distance_before(texel, position), distance, frame.orthographic != 0u);
+    let clip_then = clip_before(texel, position);
+    let distance_then = select(clip_then.w, view_distance(clip_then.z), frame.orthographic != 0u);
     let expected = Expected(s.normal, distance_then, who.x & SEEN_INSTANCE, own.level);
+    let picture = picture_of(texel);
+    let motion = unpack2x16float(who.y);
+    let before = pixel - motion;
     // Without `||`, which would branch on a uniform alone.
-    let places = select(4u, 0u, (told.reset != 0u) | has_changed(position));
-    let memory = remember(pixel - unpack2x16float(who.y), texel, expected, places);
+    let is_other = (told.reset != 0u) | has_changed(position) | has_moved(picture, clip_then, before, motion);
+    let memory = remember(before, texel, picture, expected, select(4u, 0u, is_other));
 
     let sample = sample_texel(own.block, own.level, 0u);
     let is_coarse = own.level > 0u;

@@ -14,7 +14,7 @@ use crate::shading::history::targets;
 use crate::shading::{Samples, ShadingPass};
 use crate::shadow::Place;
 use crate::targets::Targets;
-use crate::{CoarseStats, Settings};
+use crate::{CoarseStats, Settings, ShadowSizes, Shadows};
 use foveal_scene::Camera;
 
 /// By how much a gaze may move while all is at rest, in parts of the picture's sides.
@@ -114,10 +114,14 @@ impl HistoryStage {
     pub(crate) fn follow(&mut self, settings: &Settings, (camera, previous): (&Camera, &Camera)) {
         let gaze = [settings.eye.gaze, settings.stereo.gaze_shift];
         let is_whole = self.rested >= ROUND;
-        // Once every pixel was shaded by itself it is all the same where the eyes look.
+        // Once every pixel was shaded by itself it is all the same where the eyes look, unless the
+        // tiles of shadows follow them.
+        let lighting = &settings.lighting;
+        let follows_gaze = !is_whole
+            || (lighting.shadows != Shadows::Off && lighting.shadow_sizes == ShadowSizes::Rate);
         let moved = std::mem::take(&mut self.moved)
             || self.changed != Changed::Nowhere
-            || (!is_whole && !is_steady(self.gaze, gaze));
+            || (follows_gaze && !is_steady(self.gaze, gaze));
         let changed = std::mem::take(&mut self.changed);
         self.reset = self.last.as_ref().is_none_or(|last| last != previous)
             || changed == Changed::Everywhere;

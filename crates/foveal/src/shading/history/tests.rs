@@ -15,13 +15,13 @@ use crate::{Antialiasing, FrameStats, Geometry, RateSource, Renderer, Settings, 
 
 const SIZE: (u32, u32) = (157, 101);
 
-fn scene() -> Scene {
+pub(super) fn scene() -> Scene {
     let mut scene = generate::by_name("demo:1000").expect("a scene of that name");
     generate::add_point_lights(&mut scene, 20, 5);
     scene
 }
 
-fn kept() -> Settings {
+pub(super) fn kept() -> Settings {
     small(SIZE.0, SIZE.1).with(|s| {
         s.shading.mode = Shading::Coarse;
         s.coarse.history = true;
@@ -33,7 +33,7 @@ fn kept() -> Settings {
 }
 
 /// The eyes' radiances, without what lies between their pictures.
-fn seen(renderer: &Renderer) -> Vec<[u16; 4]> {
+pub(super) fn seen(renderer: &Renderer) -> Vec<[u16; 4]> {
     let layout = EyeLayout::of(renderer.settings());
     let texels: Vec<[u16; 4]> = texels(&renderer.targets().radiance_view);
     let rows = texels.chunks_exact(layout.target_size().0 as usize);
@@ -80,7 +80,7 @@ fn error(a: &[[u16; 4]], b: &[[u16; 4]]) -> f64 {
     sum / (3 * a.len()) as f64
 }
 
-fn differing(a: &[[u16; 4]], b: &[[u16; 4]]) -> usize {
+pub(super) fn differing(a: &[[u16; 4]], b: &[[u16; 4]]) -> usize {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).filter(|(a, b)| a != b).count()
 }
@@ -335,32 +335,6 @@ fn daylight_in_lux_is_kept_whole() {
         let ratio = total(&seen(&film.renderer)) / full;
         assert!((ratio - 1.0).abs() < 0.03, "frame {frame}: {ratio}");
     }
-}
-
-#[test]
-fn another_image_of_rates_counts_at_rest() {
-    let scene = generate::cornell();
-    let camera = &scene.cameras[0];
-    let settings = kept().with(|s| {
-        s.coarse.source = RateSource::Image;
-        s.antialiasing.mode = Antialiasing::Msaa;
-    });
-    let image = |luma| crate::RateImage::new(1, 1, vec![luma]).expect("a pixel");
-    let mut film = Film::new(&scene, &settings);
-    let levels = |film: &Film| {
-        let targets = film.renderer.targets();
-        let owner = &targets.coarse.as_ref().expect("coarse shading").rate.owner;
-        let read = read_level(gpu(), &owner.texture, 0, owner.blocks(1));
-        pollster::block_on(read).expect("read-back works")
-    };
-    let mut found = Vec::new();
-    for luma in [255, 0] {
-        film.renderer.set_rate_image(image(luma)).expect("it fits");
-        film.draw(camera);
-        film.draw(camera);
-        found.push(levels(&film));
-    }
-    assert!(found[0] != found[1]);
 }
 
 #[test]

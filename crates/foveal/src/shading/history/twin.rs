@@ -79,13 +79,14 @@ impl Seen {
         let distance = camera.clip_from_view(1.0).w_axis.z / depth;
         let pixel = texel.as_vec2() + 0.5;
         let position = position_at(camera, self.size.as_vec2(), pixel, depth);
-        let expected = -previous
-            .world_from_view
-            .inverse()
-            .transform_point3(position)
-            .z;
+        let aspect = self.size.x as f32 / self.size.y as f32;
+        let clip = previous.clip_from_world(aspect) * position.extend(1.0);
+        let expected = clip.w;
         let [who, motion] = self.identity[i];
-        let motion = [motion as u16, (motion >> 16) as u16].map(f32_of_half);
+        let motion = Vec2::from([motion as u16, (motion >> 16) as u16].map(f32_of_half));
+        let at_rest = (Vec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * self.size.as_vec2();
+        let away = (pixel - motion - at_rest).abs() - motion.abs() / 512.0;
+        let has_moved = away.max_element() > 0.125;
         let normal = unit_from_octahedral(self.surface[i][1]);
         let remembered = |place: Vec2| {
             let place = place.as_ivec2();
@@ -102,6 +103,7 @@ impl Seen {
             let then = unit_from_square(Vec2::new(part(0), part(6)));
             let away = (f32::from_bits((old & DISTANCE) >> 1) - expected).abs();
             let known = told.reset == 0
+                && !has_moved
                 && old & AT_ALL != 0
                 && (old ^ who) & INSTANCE == 0
                 && away <= SAME_DISTANCE * expected
@@ -110,7 +112,7 @@ impl Seen {
                 && then.dot(normal) > SAME_NORMAL;
             known.then_some((old, tile))
         };
-        let place = pixel - Vec2::from(motion);
+        let place = pixel - motion;
         let rounded = (place + Vec2::from(told.rounding)).floor();
         let first = (place - 0.5).floor();
         let found = remembered(rounded).or_else(|| {

@@ -1,0 +1,91 @@
+//! Light of things that move, with shadows off: nothing announces where it changes.
+
+use foveal_scene::{Camera, Light, LightKind, Material, Scene};
+use glam::{Mat4, Vec3};
+
+use crate::forward::twin::quads;
+use crate::testing::{Film, f32_of_half, small, texels};
+use crate::{RateSource, Settings, Shading};
+
+/// A board before a wall, and a lamp that it is moved past.
+fn scene() -> Scene {
+    let material = Material {
+        metallic: 0.0,
+        double_sided: true,
+        ..Material::default()
+    };
+    let mut scene = quads(vec![material.clone(), material], &[0.0, -1.0]);
+    scene.instances[1].world_from_object *= Mat4::from_scale(Vec3::new(6.0, 6.0, 1.0));
+    scene.lights = vec![Light {
+        kind: LightKind::Point,
+        color: Vec3::ONE,
+        intensity: 10.0,
+        position: Vec3::new(0.0, 0.0, 0.8),
+        direction: -Vec3::Y,
+        range_m: Some(3.0),
+        node: None,
+    }];
+    place(&mut scene, -2.0, 0.0);
+    scene
+}
+
+/// Moves the board to a place and turns it about its middle.
+fn place(scene: &mut Scene, x: f32, turned: f32) {
+    let at = Mat4::from_translation(Vec3::new(x, 0.0, 0.0)) * Mat4::from_rotation_y(turned);
+    scene.instances[0].world_from_object = at;
+    scene.instances[0].bounds = scene.meshes[0].bounds.transformed(at);
+    scene.objects[0].bounds = scene.instances[0].bounds;
+}
+
+/// Mean difference of what a moving board shows and what full shading shows of it, in parts of the
+/// latter.
+fn error(settings: &Settings, camera: &Camera, at: impl Fn(u32) -> (f32, f32)) -> f32 {
+    let full = settings.clone().with(|s| s.shading.mode = Shading::Full);
+    let mut scene = scene();
+    let mut films = [Film::new(&scene, settings), Film::new(&scene, &full)];
+    let (mut off, mut all) = (0.0, 0.0);
+    for frame in 0..24 {
+        let (x, turned) = at(frame);
+        place(&mut scene, x, turned);
+        let radiance = films.each_mut().map(|film| {
+            pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
+            film.draw(camera);
+            film.radiance()
+        });
+        let gbuffer = &films[1].renderer.targets().gbuffer;
+        let identity: Vec<[u32; 2]> = texels(&gbuffer.identity_view);
+        let pixels = radiance[0].iter().zip(&radiance[1]).zip(identity);
+        for ((a, b), _) in pixels.filter(|(_, who)| frame > 0 && who[0] & 0xfff == 1) {
+            let [a, b] = [a, b].map(|texel| f32_of_half(texel[0]));
+            off += (a - b).abs();
+            all += b;
+        }
+    }
+    assert!(all > 0.0);
+    off / all
+}
+
+#[test]
+fn what_moves_or_turns_has_the_light_of_where_it_is() {
+    let camera = Camera::look_at(Vec3::new(0.0, 0.0, 6.0), Vec3::ZERO, Vec3::Y, 0.8);
+    let slides = |frame: u32| (-2.0 + 0.16 * frame as f32, 0.0_f32);
+    let turns = |frame: u32| (0.4_f32, 0.06 * frame as f32);
+    for level in [0, 2] {
+        let with = |history| {
+            small(157, 101).with(|s| {
+                s.shading.mode = Shading::Coarse;
+                s.coarse.source = RateSource::Constant;
+                s.coarse.constant_level = level;
+                s.coarse.history = history;
+            })
+        };
+        for (way, at) in [("slides", &slides as &dyn Fn(u32) -> _), ("turns", &turns)] {
+            let [kept, anew] = [true, false].map(|history| error(&with(history), &camera, at));
+            println!("MOVES level {level}, it {way}: {kept}, {anew}");
+            assert!(
+                kept < 1.5 * anew + 0.02,
+                "level {level}, it {way}: {kept}, {anew}"
+            );
+        }
+    }
+}
