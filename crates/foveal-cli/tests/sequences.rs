@@ -124,6 +124,36 @@ fn a_single_picture_is_the_frame_of_its_moment() {
 }
 
 #[test]
+fn a_frame_after_a_gap_follows_on_nothing() {
+    let folder = folder();
+    let here = folder.path();
+    moving_triangle(here);
+    let finished = b"finished elsewhere, with the end of a PNG file\0\0\0\0IEND\xaeB`\x82";
+    for shading in ["coarse", "variable"] {
+        let words = [
+            "render",
+            "triangle.gltf",
+            "--fps",
+            "10",
+            "--shading",
+            shading,
+        ];
+        for frame in [3, 4] {
+            fs::write(here.join(format!("{shading}_{frame}.png")), finished).unwrap();
+        }
+        let frames = format!("{shading}_#.png");
+        let sequence = ["--frames", "0..6", "--skip-existing", "-o", &frames];
+        succeed(here, &[&words[..], &sequence, &SIZE].concat());
+        succeed(
+            here,
+            &[&words[..], &["-o", "still.png", "--time", "0.5"], &SIZE].concat(),
+        );
+        let after_gap = bytes(here, &format!("{shading}_5.png"));
+        assert!(after_gap == bytes(here, "still.png"), "{shading}");
+    }
+}
+
+#[test]
 fn finished_frames_are_left_out_and_the_rest_is_whole() {
     let folder = folder();
     let here = folder.path();
@@ -355,8 +385,7 @@ fn parts_of_a_sequence_are_drawn_by_number() {
 fn a_part_that_warms_up_over_the_frames_before_it_is_the_same_as_in_the_whole() {
     let folder = folder();
     let here = folder.path();
-    moving_triangle(here);
-    let words = "render triangle.gltf --path sway --point-lights 4 --fps 8 --shading coarse \
+    let words = "render cornell --path sway --point-lights 4 --fps 8 --shading coarse \
                  --display 60 --rate radii --composite light";
     let words: Vec<&str> = words.split_whitespace().chain(SIZE).collect();
     let render = |output: &str, more: &[&str]| {

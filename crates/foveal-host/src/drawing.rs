@@ -65,13 +65,18 @@ impl Drawing {
     }
 
     /// Draws a moment, with motion since another. Its picture depends on the two alone, not on the
-    /// frames drawn before.
+    /// frames drawn before, unless it follows on ([`follows_on`]) and the other is what was drawn last.
     pub fn draw_moment(&mut self, time_s: f32, previous_time_s: f32) -> anyhow::Result<FrameStats> {
         let is_elsewhere = self.posed_s != Some(previous_time_s);
         if is_elsewhere {
             self.pose(previous_time_s)?;
         }
-        let previous_camera = self.viewpoint.at(&self.scene, previous_time_s);
+        let mut previous_camera = self.viewpoint.at(&self.scene, previous_time_s);
+        if is_elsewhere && self.scene.is_animated() {
+            // By another name it is not the one that was drawn last: what is kept from frame to frame
+            // is of another pose than motion is.
+            previous_camera.name.push_str(" at another time");
+        }
         // A pose that the last frame has shown rests without another.
         if is_elsewhere || time_s != previous_time_s {
             self.pose(time_s)?;

@@ -28,10 +28,12 @@ impl Submission {
             && settings.stereo.clipping != EyeClipping::Discard
             && settings.geometry.path == Geometry::Gbuffer;
         let instanced = Self::Instanced { clips };
-        let lacks = if settings.stereo.clipping == EyeClipping::Clip && !has_clip {
-            "; discards, as the device has no clip distances"
-        } else {
-            ""
+        let lacks = match settings.stereo.clipping {
+            EyeClipping::Clip if !has_clip => "; discards, as the device has no clip distances",
+            EyeClipping::Clip if !clips => {
+                "; without the plane, which a visibility buffer does not need"
+            }
+            _ => "",
         };
         let this = match settings.stereo.mode {
             Stereo::Off => Self::Mono,

@@ -173,10 +173,10 @@ fn shown_by(picture: Picture, maps: EyeMaps, first: vec2u, last: vec2u, who: vec
         || are_parallel(upper, normal_of(right / step, at_right, d.y));
     let down = are_parallel(upper, normal_of(above / step, at_first, d.x))
         || are_parallel(upper, normal_of(below / step, at_below, d.z));
-    // At the picture's edge pixels stand in for each other.
-    let whole = all(last == first + 1u) && who.x != 0u && who.w != 0u;
-    let flat = are_parallel(upper, lower);
-    let limit = u32(wide && (!whole || (flat && across))) | (u32(tall && (!whole || (flat && down))) << 1u);
+    // Of a quad that the picture's edge cuts, what lies beside a step is not known.
+    let flat = all(last == first + 1u) && are_parallel(upper, lower);
+    let empty = who.x == 0u || who.w == 0u;
+    let limit = u32(wide && (empty || (flat && across))) | (u32(tall && (empty || (flat && down))) << 1u);
     return Shown(limit, upper);
 }
 

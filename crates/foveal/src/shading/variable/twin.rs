@@ -208,8 +208,11 @@ fn surface_limit(seen: &Seen, camera: &Camera, first: UVec2) -> u32 {
     let who = texels.map(|t| seen.identity[seen.at(t)][0]);
     let wide = who[0] == who[1] && who[2] == who[3];
     let tall = who[0] == who[2] && who[1] == who[3];
-    if texels[3] != first + 1 || who[0] == 0 || who[3] == 0 {
+    if who[0] == 0 || who[3] == 0 {
         return u32::from(wide) | u32::from(tall) << 1;
+    }
+    if texels[3] != first + 1 {
+        return 0;
     }
     let at = |x, y| seen.position(camera, first, IVec2::new(x, y));
     let [p, q, r, s] = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];

@@ -164,3 +164,19 @@ fn what_is_known_of_a_background_turns_with_the_camera() {
     let wrong = wrong.count();
     assert!(wrong < known.len() / 10, "{wrong} of {}", known.len());
 }
+
+#[test]
+fn quads_that_the_pictures_edge_cuts_are_shaded_by_pixels() {
+    for across in [true, false] {
+        let settings = constant(1).with(|s| {
+            s.picture.width += 1;
+            s.picture.height += 1;
+        });
+        let mask = mask(&walls(0.02, across), &settings);
+        let wide = SIZE.0 as usize / 2 + 1;
+        let (last, rows) = (mask.len() - wide, mask.chunks_exact(wide));
+        assert!(mask[last..].iter().all(|rate| rate & 7 == 0));
+        assert!(rows.into_iter().all(|row| row[wide - 1] & 7 == 0));
+        assert!(mask.iter().any(|rate| rate & 7 == 3));
+    }
+}
