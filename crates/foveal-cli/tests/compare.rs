@@ -352,6 +352,22 @@ fn a_map_replaces_no_frame() {
     succeed(folder.path(), &words);
 }
 
+#[cfg(unix)]
+#[test]
+fn a_map_replaces_no_picture_that_is_compared() {
+    let folder = folder();
+    pictures(folder.path());
+    std::fs::create_dir(folder.path().join("inner")).unwrap();
+    std::os::unix::fs::symlink("a.png", folder.path().join("link.png")).unwrap();
+    let before = std::fs::read(folder.path().join("a.png")).unwrap();
+    for map in ["./a.png", "inner/../a.png", "link.png"] {
+        let output = foveal_in(folder.path(), &["compare", "a.png", "b.png", "--diff", map]);
+        assert_eq!(output.status.code(), Some(2), "{map}: {}", stderr(&output));
+        let after = std::fs::read(folder.path().join("a.png")).unwrap();
+        assert_eq!(after, before, "{map}");
+    }
+}
+
 #[test]
 fn a_rate_that_the_metric_does_not_take_is_refused_at_once() {
     let folder = folder();

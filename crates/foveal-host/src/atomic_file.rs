@@ -36,13 +36,27 @@ pub fn check_writable(path: &Path) -> anyhow::Result<()> {
         .with_context(|| format!("cannot write '{}'", path.display()))
 }
 
-/// Whether two of these paths are the same file, however they are written: `a.png` is `./a.png`.
+/// Whether two of these paths are the same file, however they are written: `a.png` is `./a.png`,
+/// and a link is what it leads to.
 pub fn any_twice<'a>(paths: impl IntoIterator<Item = &'a Path>) -> bool {
     let mut seen = HashSet::new();
-    paths.into_iter().any(|path| {
-        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        !seen.insert(path)
-    })
+    paths
+        .into_iter()
+        .any(|path| !seen.insert(one_spelling(path)))
+}
+
+/// The same path for every way to write a file's path, whether the file exists or not.
+fn one_spelling(path: &Path) -> PathBuf {
+    let path = destination(path).unwrap_or_else(|_| path.to_owned());
+    let in_folder = || {
+        let folder = fs::canonicalize(folder_of(&path)).ok()?;
+        Some(folder.join(path.file_name()?))
+    };
+    fs::canonicalize(&path)
+        .ok()
+        .or_else(in_folder)
+        .or_else(|| std::path::absolute(&path).ok())
+        .unwrap_or(path)
 }
 
 /// Writes `bytes` to `path`, replacing a regular file that is there.
@@ -287,6 +301,28 @@ mod tests {
         let other = folder.path().join("a.exr");
         fs::write(&other, b"x").unwrap();
         assert!(is_finished(&other));
+    }
+
+    #[test]
+    fn one_file_is_the_same_however_its_path_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let inner = folder.path().join("inner");
+        fs::create_dir(&inner).unwrap();
+        let file = folder.path().join("a.png");
+        let same = |other: &Path| any_twice([file.as_path(), other]);
+        // A file that is not there yet, and one that is.
+        for _ in 0..2 {
+            assert!(same(&inner.join("../a.png")) && same(&folder.path().join("./a.png")));
+            assert!(!same(&inner.join("a.png")) && !same(&folder.path().join("b.png")));
+            #[cfg(unix)]
+            {
+                let link = inner.join("link.png");
+                std::os::unix::fs::symlink("../a.png", &link).unwrap();
+                assert!(same(&link));
+                fs::remove_file(&link).unwrap();
+            }
+            fs::write(&file, "picture").unwrap();
+        }
     }
 
     #[test]
