@@ -20,12 +20,16 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = Line<'_>> {
         loop {
             let (index, first) = rest.next()?;
             let mut text = String::from_utf8_lossy(first.trim_ascii());
-            while text.ends_with('\\') && !has_comment(&text) {
+            let mut is_commented = has_comment(&text);
+            while text.ends_with('\\') && !is_commented {
                 let Some((_, next)) = rest.next() else { break };
+                let next = String::from_utf8_lossy(next.trim_ascii());
+                // Of the new line alone: a million may be joined.
+                is_commented = has_comment(&next);
                 let joined = text.to_mut();
                 joined.pop();
                 joined.push(' ');
-                joined.push_str(&String::from_utf8_lossy(next.trim_ascii()));
+                joined.push_str(&next);
             }
             if !text.is_empty() && !text.starts_with('#') {
                 let number = index + 1;

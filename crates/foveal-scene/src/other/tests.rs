@@ -1,5 +1,7 @@
 //! OBJ and PLY files made on the spot.
 
+mod lines;
+
 use proptest::prelude::*;
 
 use crate::{AlphaMode, Code, Limit, LoadOptions, Scene, SceneError, load_bytes};
@@ -450,14 +452,6 @@ proptest! {
             _ => {}
         }
     }
-}
-
-#[test]
-fn a_comment_that_ends_in_a_backslash_leaves_the_next_line_alone() {
-    let text = "# from C:\\models\\\nv 0 0 0 # C:\\\nv 1 0 0\nv 0 1 \\\n0\nf 1 2 3\n";
-    let scene = load("a.obj", text.as_bytes(), &[]).unwrap();
-    assert_eq!(scene.triangle_count(), 1);
-    assert_eq!(scene.bounds().max.to_array(), [1.0, 1.0, 0.0]);
 }
 
 #[test]

@@ -1,0 +1,21 @@
+//! Lines that are joined, and what stands around them.
+
+use super::load;
+
+#[test]
+fn a_comment_that_ends_in_a_backslash_leaves_the_next_line_alone() {
+    let text = "# from C:\\models\\\nv 0 0 0 # C:\\\nv 1 0 0\nv 0 1 \\\n0\nf 1 2 3\n";
+    let scene = load("a.obj", text.as_bytes(), &[]).unwrap();
+    assert_eq!(scene.triangle_count(), 1);
+    assert_eq!(scene.bounds().max.to_array(), [1.0, 1.0, 0.0]);
+}
+
+#[test]
+fn millions_of_joined_lines_are_read_once_each() {
+    // A time that grows with the square of the lines would be hours.
+    let joined = "\\\n".repeat(2 << 20);
+    let text = format!("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nl 1 {joined}2\nusemtl red\nl 2 1\n");
+    let material = format!("newmtl red\nKd 1 {joined}0 0\n");
+    let scene = load("a.obj", text.as_bytes(), &[("a.mtl", &material)]).unwrap();
+    assert_eq!((scene.line_count(), scene.warnings.len()), (2, 0));
+}
