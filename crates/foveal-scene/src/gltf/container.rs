@@ -18,6 +18,9 @@ fn word(bytes: &[u8], at: usize) -> Option<u32> {
     Some(u32::from_le_bytes(word.try_into().ok()?))
 }
 
+/// What text in UTF-8 may begin with.
+pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+
 /// Splits a file into JSON and binary part; the error is a cause for 'not glTF 2.0'.
 pub(crate) fn split(bytes: &[u8]) -> Result<Container<'_>, String> {
     if !bytes.starts_with(b"glTF") {
@@ -85,7 +88,7 @@ pub(crate) fn split(bytes: &[u8]) -> Result<Container<'_>, String> {
 }
 
 fn split_text(bytes: &[u8]) -> Result<Container<'_>, String> {
-    let json = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let json = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
     match json.iter().find(|b| !b.is_ascii_whitespace()) {
         None => Err("it is empty".to_owned()),
         Some(b'{') => Ok(Container {

@@ -47,6 +47,8 @@ mod tests;
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) use budget::Budget;
 pub(crate) use cameras::rigid;
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) use container::BYTE_ORDER_MARK;
 pub(crate) use lights::place as place_light;
 pub(crate) use nodes::{all_the_way_up, rotation};
 pub(crate) use normals::plane_normal;

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use crate::gltf::BYTE_ORDER_MARK;
+
 /// Longest name in bytes; longer ones are cut.
 const MAX_NAME: usize = 200;
 
@@ -13,8 +15,9 @@ pub(super) struct Line<'a> {
 }
 
 /// The lines that are neither empty nor comments, trimmed; a comment is not joined with the next.
-/// Bytes that are not UTF-8 are replaced.
+/// A byte order mark before the first is left out. Bytes that are not UTF-8 are replaced.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = Line<'_>> {
+    let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
     let mut rest = bytes.split(|&b| b == b'\n').enumerate();
     std::iter::from_fn(move || {
         loop {

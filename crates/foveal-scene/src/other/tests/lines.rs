@@ -19,3 +19,18 @@ fn millions_of_joined_lines_are_read_once_each() {
     let scene = load("a.obj", text.as_bytes(), &[("a.mtl", &material)]).unwrap();
     assert_eq!((scene.line_count(), scene.warnings.len()), (2, 0));
 }
+
+#[test]
+fn a_byte_order_mark_before_the_first_line_is_no_part_of_it() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nmtllib a.mtl\nusemtl red\nf 1 2 3\n";
+    let material = "newmtl red\nKd 1 0 0\n";
+    let with = |mark: &str| {
+        let text = format!("{mark}{text}");
+        let material = format!("{mark}{material}");
+        load("a.obj", text.as_bytes(), &[("a.mtl", &material)]).unwrap()
+    };
+    let (plain, marked) = (with(""), with("\u{feff}"));
+    assert_eq!(marked.warnings, []);
+    assert_eq!(marked.meshes, plain.meshes);
+    assert_eq!(marked.materials, plain.materials);
+}
