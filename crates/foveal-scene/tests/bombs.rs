@@ -314,6 +314,47 @@ fn small_files_that_ask_for_much_are_refused_before_anything_is_allocated() {
 }
 
 #[test]
+fn long_names_are_cut_before_they_are_copied() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let long = "A".repeat(100_000);
+
+    // Each node that has the camera shows its name.
+    let mut bomb = Bomb::new();
+    let lens = json!({ "yfov": 1, "znear": 0.1 });
+    bomb.json["cameras"] = json!([{ "name": long, "type": "perspective", "perspective": lens }]);
+    let mut nodes = vec![json!({ "camera": 0 }); 20_000];
+    nodes.push(json!({ "mesh": 0 }));
+    bomb.json["scenes"] = json!([{ "nodes": (0..nodes.len()).collect::<Vec<_>>() }]);
+    bomb.json["nodes"] = json!(nodes);
+    assert_eq!(bomb.load().unwrap().cameras.len(), 20_000);
+    assert_small("nodes with one camera");
+
+    // Each threshold of transparency makes a texture of its own, which has the picture's name.
+    let mut bomb = Bomb::new();
+    bomb.json["images"] = json!([{ "uri": long }]);
+    bomb.json["textures"] = json!([{ "source": 0 }]);
+    let material = |i: u32| {
+        json!({
+            "alphaMode": "MASK", "alphaCutoff": f64::from(i) / 20_000.0,
+            "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } },
+        })
+    };
+    bomb.json["materials"] = (0..20_000).map(material).collect();
+    assert_eq!(bomb.load().unwrap().textures.len(), 20_000);
+    assert_small("textures of one picture");
+}
+
+#[test]
+fn materials_count_although_they_take_three_bytes_in_the_file() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut bomb = Bomb::new();
+    bomb.json["materials"] = json!(vec![json!({}); 300_000]);
+    let text = bomb.refused(Some(Limit::Expansion));
+    assert!(text.contains("for materials"), "{text}");
+    assert_small("empty materials");
+}
+
+#[test]
 fn a_large_plain_picture_is_cheap_enough_to_be_shown() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let mut bomb = Bomb::new();

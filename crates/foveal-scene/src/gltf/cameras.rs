@@ -2,9 +2,22 @@
 
 use glam::{Mat3, Mat4, Vec3};
 
+use super::budget::Budget;
 use super::json::Obj;
+use super::nodes::NodeDef;
 use crate::error::{Flaw, Parsed};
 use crate::{Camera, Code, Projection};
+
+/// Memory of a camera at a node with the longest name, in bytes.
+const CAMERA_BYTES: u64 = 1200;
+
+/// Counts the memory of the cameras at those nodes that are reached.
+pub(crate) fn take_memory(nodes: &[NodeDef], reached: &[bool], budget: &Budget) -> Parsed<()> {
+    let carriers = nodes.iter().zip(reached);
+    let carriers = carriers.filter(|(node, reached)| **reached && node.camera.is_some());
+    let bytes = CAMERA_BYTES.saturating_mul(carriers.count() as u64);
+    budget.take(bytes, "cameras").map_err(|e| e.under("nodes"))
+}
 
 /// A camera as the file has it.
 pub(crate) struct CameraDef {
@@ -16,7 +29,7 @@ pub(crate) struct CameraDef {
 impl CameraDef {
     pub(crate) fn parse(o: Obj<'_>) -> Parsed<Self> {
         Ok(Self {
-            name: o.string("name")?.map(str::to_owned),
+            name: o.name("name")?,
             projection: parse_projection(o),
         })
     }

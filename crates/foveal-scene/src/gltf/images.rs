@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::document::{Counts, View};
-use super::json::Obj;
+use super::json::{Obj, cut_name};
 use crate::error::{Flaw, Parsed};
 use crate::{Code, Filter, Sampler, Wrap};
 
@@ -32,7 +32,7 @@ impl ImageDef {
         };
         let file_name = uri.filter(|u| !u.starts_with("data:"));
         Ok(Self {
-            name: o.name("name")?.or_else(|| file_name.map(str::to_owned)),
+            name: o.name("name")?.or_else(|| file_name.map(cut_name)),
             source,
         })
     }

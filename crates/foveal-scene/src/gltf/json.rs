@@ -73,6 +73,12 @@ fn to_index(value: &Value, len: usize) -> Parsed<u32> {
     }
 }
 
+/// A name, cut where it is longer than any name: it may be copied for each of a million instances.
+pub(crate) fn cut_name(name: &str) -> String {
+    const MOST_BYTES: usize = 1024;
+    name[..name.floor_char_boundary(MOST_BYTES)].to_owned()
+}
+
 impl<'a> Obj<'a> {
     pub(crate) fn of(value: &'a Value) -> Parsed<Self> {
         value
@@ -191,12 +197,9 @@ impl<'a> Obj<'a> {
         self.read(key, |v| v.as_str().ok_or_else(|| wrong(v, "a string")))
     }
 
-    /// A name for people, cut where it is longer than any name: it may be copied for each of a
-    /// million instances.
+    /// A name for people, cut.
     pub(crate) fn name(self, key: &str) -> Parsed<Option<String>> {
-        const MOST_BYTES: usize = 1024;
-        let name = self.string(key)?;
-        Ok(name.map(|name| name[..name.floor_char_boundary(MOST_BYTES)].to_owned()))
+        Ok(self.string(key)?.map(cut_name))
     }
 
     pub(crate) fn strings(self, key: &str) -> Parsed<Vec<&'a str>> {

@@ -2,6 +2,7 @@
 
 use glam::{Mat3, Vec3, Vec4};
 
+use super::budget::Budget;
 use super::document::Counts;
 use super::json::Obj;
 use super::lobes::{self, KeptLobes};
@@ -24,6 +25,16 @@ pub(crate) struct MaterialDef {
     pub(crate) emissive_strength: f32,
     /// Lobes that stay although they show nothing at rest.
     kept: KeptLobes,
+}
+
+/// Memory of a material before and after its textures are known, in bytes.
+const MATERIAL_BYTES: u64 = 2400;
+
+/// Counts the memory of materials, which the file may write in three bytes each.
+pub(crate) fn take_memory(materials: usize, budget: &Budget) -> Parsed<()> {
+    let bytes = MATERIAL_BYTES.saturating_mul(materials as u64);
+    let taken = budget.take(bytes, "materials");
+    taken.map_err(|e| e.under("materials"))
 }
 
 /// The file's UV sets that a material reads, in the order of a vertex's two slots.

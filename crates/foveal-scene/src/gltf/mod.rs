@@ -44,7 +44,6 @@ mod wanted;
 #[cfg(test)]
 mod tests;
 
-#[cfg(not(target_arch = "wasm32"))]
 pub(crate) use budget::Budget;
 pub(crate) use cameras::rigid;
 #[cfg(not(target_arch = "wasm32"))]
@@ -59,6 +58,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use buffers::Buffers;
 use document::Document;
 use glam::Mat4;
+use json::Obj;
 use nodes::Hierarchy;
 use parts::Geometry;
 use reader::Reader;
@@ -115,6 +115,10 @@ fn import_checked(
     let root = serde_json::from_slice(container.json)
         .map_err(|e| not_gltf(format!("its JSON is broken: {e}")))?;
     warn.extend(container.notes);
+    // Before they are read, with what is known of the files so far.
+    let known = Budget::new(bytes.len() as u64, options);
+    materials::take_memory(Obj::of(&root).map_or(0, |o| o.len_of("materials")), &known)
+        .map_err(|e| e.in_file(file))?;
     let mut document = Document::parse(&root, &mut warn).map_err(|e| e.in_file(file))?;
     if let Some(variant) = &options.variant {
         document
@@ -177,6 +181,9 @@ fn build(
     let mut scene = Scene::default();
     let document = reader.document;
     let hierarchy = Hierarchy::of(document, warn)?;
+    let budget = &reader.buffers.budget;
+    materials::take_memory(document.materials.len(), budget)?;
+    cameras::take_memory(&document.nodes, &hierarchy.reached, budget)?;
 
     let mut wanted = Wanted::default();
     scene.materials = document
