@@ -355,6 +355,20 @@ fn materials_count_although_they_take_three_bytes_in_the_file() {
 }
 
 #[test]
+fn libraries_of_materials_are_held_one_at_a_time() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let names: Vec<String> = (0..64).map(|i| format!("{i}.mtl")).collect();
+    let text = format!("mtllib {}\nv 0 0 0\nf 1 1 1\n", names.join(" "));
+    let resolver = |name: &str| match name.len() {
+        0..=6 => Ok(vec![b' '; 8 << 20]),
+        _ => Err("no such file".to_owned()),
+    };
+    let scene = load_bytes(text.as_bytes(), "a.obj", &LoadOptions::default(), &resolver).unwrap();
+    assert_eq!(scene.warnings, []);
+    assert_small("64 libraries");
+}
+
+#[test]
 fn a_large_plain_picture_is_cheap_enough_to_be_shown() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let mut bomb = Bomb::new();

@@ -2,6 +2,7 @@
 //! and completes (normals, tangents, mip levels, limits) as it does any other.
 
 mod builder;
+mod libraries;
 mod lines;
 mod mtl;
 mod obj;

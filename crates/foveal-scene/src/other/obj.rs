@@ -5,19 +5,17 @@
 //! and takes memory without bound for short files.
 //! Lines become lists of two vertices each.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use serde_json::json;
 
 use super::builder::{Builder, plain_surface};
+use super::libraries::{MAX_LIBRARIES, Materials, TOO_MANY_LIBRARIES};
 use super::lines::{Line, lines, name_of};
-use super::{Refusal, check_memory, linear, mtl};
+use super::{Refusal, check_memory, linear};
 use crate::error::Limit;
 use crate::gltf::Resolver;
 use crate::{Code, LoadOptions, Warning};
-
-/// Most material libraries of a file.
-const MAX_LIBRARIES: usize = 64;
 
 /// What an object, and a material, takes while it is imported, in bytes.
 const OBJECT_BYTES: u64 = 16 << 10;
@@ -89,7 +87,14 @@ pub(super) fn convert(
     let file = File::parse(bytes, options)?;
     let mut notes = Vec::new();
     let mut builder = Builder::default();
-    let materials = file.add_materials(bytes.len(), options, resolver, &mut builder, &mut notes)?;
+    check_memory(
+        "materials",
+        file.used.len(),
+        MATERIAL_BYTES,
+        bytes.len(),
+        options,
+    )?;
+    let materials = file.add_materials(resolver, &mut builder, &mut notes);
     if file.dropped > 0 {
         let text = format!(
             "{} of {} faces, lines and points have too few corners or name vertices that do not exist, \
@@ -156,7 +161,7 @@ impl File {
                 }
                 "mtllib" if !file.libraries.iter().any(|library| library == rest) => {
                     if file.libraries.len() == MAX_LIBRARIES {
-                        return Err(broken("names more than 64 material libraries"));
+                        return Err(broken(TOO_MANY_LIBRARIES));
                     }
                     file.libraries.push(rest.to_owned());
                 }
@@ -291,66 +296,15 @@ impl File {
     /// Adds the materials that faces use; returns the number of each in the document.
     fn add_materials(
         &self,
-        input: usize,
-        options: &LoadOptions,
         resolver: &Resolver<'_>,
         builder: &mut Builder,
         notes: &mut Vec<Warning>,
-    ) -> Result<Vec<Option<usize>>, Refusal> {
-        check_memory("materials", self.used.len(), MATERIAL_BYTES, input, options)?;
-        let mut wanted: HashMap<&str, usize> = HashMap::new();
-        for (number, name) in self.used.iter().enumerate() {
-            wanted.insert(name, number);
+    ) -> Vec<Option<usize>> {
+        let mut materials = Materials::new(&self.used, resolver, builder, notes);
+        for line in &self.libraries {
+            materials.read(line);
         }
-        let mut numbers = vec![None; self.used.len()];
-        let mut read = HashSet::new();
-        for library in &self.libraries {
-            let name = library.replace('\\', "/");
-            // One name with spaces in it, or several names.
-            let found = resolver(&name).map(|bytes| vec![bytes]).or_else(|cause| {
-                let names: Vec<&str> = name.split_whitespace().collect();
-                if names.len() < 2 {
-                    return Err(cause);
-                }
-                names.iter().map(|name| resolver(name)).collect()
-            });
-            let files = match found {
-                Ok(files) => files,
-                Err(cause) => {
-                    let text = format!("mtllib: {cause}");
-                    notes.push(Warning::new(Code::MaterialUnreadable, text));
-                    continue;
-                }
-            };
-            for bytes in files {
-                for material in mtl::parse(&bytes) {
-                    let Some(&number) = wanted.get(material.name.as_str()) else {
-                        continue;
-                    };
-                    // The first of a name holds.
-                    if read.insert(number) {
-                        let surface = material.surface(builder, notes);
-                        numbers[number] = Some(builder.material(&surface));
-                    }
-                }
-            }
-        }
-        let missing: Vec<&str> = self
-            .used
-            .iter()
-            .zip(&numbers)
-            .filter(|(_, number)| number.is_none())
-            .map(|(name, _)| name.as_str())
-            .take(10)
-            .collect();
-        if !missing.is_empty() {
-            let text = format!(
-                "usemtl: no library has the materials {}",
-                missing.join(", ")
-            );
-            notes.push(Warning::new(Code::MaterialUnreadable, text));
-        }
-        Ok(numbers)
+        materials.finish()
     }
 
     fn add_group(

@@ -1,5 +1,6 @@
 //! OBJ and PLY files made on the spot.
 
+mod libraries;
 mod lines;
 
 use proptest::prelude::*;

@@ -1,0 +1,102 @@
+//! The material libraries that an OBJ file names.
+
+use std::collections::{HashMap, HashSet};
+
+use super::builder::Builder;
+use super::mtl;
+use crate::gltf::Resolver;
+use crate::{Code, Warning};
+
+/// Most material libraries of a file.
+pub(super) const MAX_LIBRARIES: usize = 64;
+
+pub(super) const TOO_MANY_LIBRARIES: &str = "names more than 64 material libraries";
+
+/// The materials that faces use, as far as they are found.
+pub(super) struct Materials<'a> {
+    used: &'a [String],
+    number_of: HashMap<&'a str, usize>,
+    /// Of each in use: its number in the document.
+    found: Vec<Option<usize>>,
+    /// Names of the libraries that are read.
+    libraries: HashSet<String>,
+    resolver: &'a Resolver<'a>,
+    builder: &'a mut Builder,
+    notes: &'a mut Vec<Warning>,
+}
+
+impl<'a> Materials<'a> {
+    pub(super) fn new(
+        used: &'a [String],
+        resolver: &'a Resolver<'a>,
+        builder: &'a mut Builder,
+        notes: &'a mut Vec<Warning>,
+    ) -> Self {
+        let numbers = used.iter().enumerate();
+        Self {
+            used,
+            number_of: numbers.map(|(i, name)| (name.as_str(), i)).collect(),
+            found: vec![None; used.len()],
+            libraries: HashSet::new(),
+            resolver,
+            builder,
+            notes,
+        }
+    }
+
+    /// Reads what a line names: one library with blanks in its name, or several.
+    pub(super) fn read(&mut self, line: &str) {
+        let line = line.replace('\\', "/");
+        let read = self.read_one(&line).or_else(|cause| {
+            let mut names = line.split_whitespace();
+            match names.clone().count() {
+                0 | 1 => Err(cause),
+                _ => names.try_for_each(|name| self.read_one(name)),
+            }
+        });
+        if let Err(cause) = read {
+            let text = format!("mtllib: {cause}");
+            self.notes
+                .push(Warning::new(Code::MaterialUnreadable, text));
+        }
+    }
+
+    /// Reads a library, once.
+    fn read_one(&mut self, name: &str) -> Result<(), String> {
+        if self.libraries.contains(name) {
+            return Ok(());
+        }
+        if self.libraries.len() == MAX_LIBRARIES {
+            return Err(TOO_MANY_LIBRARIES.to_owned());
+        }
+        let bytes = (self.resolver)(name)?;
+        self.libraries.insert(name.to_owned());
+        for material in mtl::parse(&bytes) {
+            let Some(&number) = self.number_of.get(material.name.as_str()) else {
+                continue;
+            };
+            // The first of a name holds.
+            if self.found[number].is_none() {
+                let surface = material.surface(self.builder, self.notes);
+                self.found[number] = Some(self.builder.material(&surface));
+            }
+        }
+        Ok(())
+    }
+
+    /// The number of each material in the document; a warning names some that no library has.
+    pub(super) fn finish(self) -> Vec<Option<usize>> {
+        let all = self.used.iter().zip(&self.found);
+        let missing = all.filter(|(_, number)| number.is_none());
+        let missing: Vec<&str> = missing.map(|(name, _)| name.as_str()).take(10).collect();
+        if !missing.is_empty() {
+            let text = format!(
+                "usemtl: no library has the materials {}",
+                missing.join(", ")
+            );
+            self.notes
+                .push(Warning::new(Code::MaterialUnreadable, text));
+        }
+        self.found
+    }
+}
