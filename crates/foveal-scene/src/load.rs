@@ -5,7 +5,7 @@
 
 use std::fs::File;
 use std::io::Read;
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::{Limit, amount};
@@ -36,8 +36,8 @@ pub struct LoadOptions {
     pub parallel: bool,
     /// How normals are made where the file gives none.
     pub missing_normals: MissingNormals,
-    /// Allow external files outside the scene's own folder, by path (`../textures/wood.png`) or by
-    /// a symbolic link that leads there.
+    /// Allow external files outside the scene's own folder, by path (`../textures/wood.png`,
+    /// `/textures/wood.png`) or by a symbolic link that leads there.
     pub outside_files: bool,
     /// Read what nothing shown uses, too, meshes and pictures, and warn of what is wrong with it. It
     /// is freed again.
@@ -133,7 +133,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, SceneError> {
 /// Loads a scene from memory; `name` is used in messages and as [`Scene::name`], and a Wavefront
 /// file is known by its ending.
 ///
-/// `resolver` is called with the percent-decoded relative URI of each external file and gives its
+/// `resolver` is called with the percent-decoded URI of each external file and gives its
 /// bytes or the reason why not; `&|_| Err("no files here".to_owned())` suits a `.glb`.
 ///
 /// # Errors
@@ -215,45 +215,62 @@ fn open_regular(path: &Path) -> Result<File, String> {
     File::open(path).map_err(|e| e.to_string())
 }
 
-/// Reads a file that a scene names. Without `outside_files` it must lie in or under the scene's
-/// folder, by its path and after all symbolic links.
+/// Reads a file that a scene names, by a path that is absolute or relative to the scene's folder.
+/// Without `outside_files` it must lie in or under that folder.
 fn resolve_beside(
     folder: &Path,
     uri: &str,
     outside_files: bool,
     allowance: &AtomicU64,
 ) -> Result<Vec<u8>, String> {
-    let relative = Path::new(uri);
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    let path = if outside_files {
+        folder.join(uri)
+    } else {
+        path_inside(folder, uri)?
+    };
+    read_limited(&path, allowance).map_err(|e| unreadable(uri, e))
+}
+
+/// The path of a file that lies in or under a folder, by its path and after all symbolic links. What
+/// leads elsewhere by its path is not looked for: it may be on another machine.
+fn path_inside(folder: &Path, uri: &str) -> Result<PathBuf, String> {
+    let named = Path::new(uri);
+    let absolute = [std::path::absolute(folder), folder.canonicalize()];
+    let mut within = absolute.iter().flatten().map(|own| named.strip_prefix(own));
+    let relative = within.find_map(Result::ok).unwrap_or(named);
     let mut depth = 0i32;
     for part in relative.components() {
         match part {
             Component::Normal(_) => depth += 1,
             Component::CurDir => {}
             Component::ParentDir => depth -= 1,
-            Component::RootDir | Component::Prefix(_) => {
-                return Err(format!("\"{uri}\" is not a relative path"));
-            }
+            Component::RootDir | Component::Prefix(_) => depth = -1,
         }
-        if depth < 0 && !outside_files {
+        if depth < 0 {
             return Err(format!("\"{uri}\" leads out of the scene's folder"));
         }
     }
-    let unreadable = |e: String| format!("\"{uri}\" cannot be read: {e}");
     let path = folder.join(relative);
-    if !outside_files {
-        let resolved = |path: &Path| path.canonicalize().map_err(|e| unreadable(e.to_string()));
-        let own = if folder.as_os_str().is_empty() {
-            Path::new(".")
-        } else {
-            folder
-        };
-        if !resolved(&path)?.starts_with(resolved(own)?) {
-            return Err(format!(
-                "\"{uri}\" is a link that leads out of the scene's folder"
-            ));
-        }
+    let resolved = |path: &Path| {
+        path.canonicalize()
+            .map_err(|e| unreadable(uri, e.to_string()))
+    };
+    if resolved(&path)?.starts_with(resolved(folder)?) {
+        Ok(path)
+    } else {
+        Err(format!(
+            "\"{uri}\" is a link that leads out of the scene's folder"
+        ))
     }
-    read_limited(&path, allowance).map_err(unreadable)
+}
+
+fn unreadable(uri: &str, cause: String) -> String {
+    format!("\"{uri}\" cannot be read: {cause}")
 }
 
 #[cfg(test)]
@@ -274,7 +291,32 @@ mod tests {
         assert!(ask("../secret.bin").is_err_and(|e| e.contains("leads out")));
         assert!(ask("x/../../secret.bin").is_err_and(|e| e.contains("leads out")));
         assert!(ask("x/../own.bin").is_err_and(|e| e.contains("cannot be read")));
-        assert!(ask("/etc/hosts").is_err_and(|e| e.contains("not a relative path")));
+        assert!(ask("/etc/hosts").is_err_and(|e| e.contains("leads out")));
+    }
+
+    #[test]
+    fn absolute_paths_are_taken_within_the_scenes_folder_and_elsewhere_when_allowed() {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = folder.path().join("scene");
+        std::fs::create_dir(&scene).unwrap();
+        std::fs::write(folder.path().join("other"), b"12345").unwrap();
+        std::fs::write(scene.join("own"), b"1234").unwrap();
+        let ask = |path: PathBuf, outside| {
+            let uri = path.to_str().unwrap();
+            resolve_beside(&scene, uri, outside, &AtomicU64::new(100)).map(|b| b.len())
+        };
+        for outside in [false, true] {
+            assert_eq!(ask(scene.join("own"), outside), Ok(4));
+            assert_eq!(
+                ask(scene.canonicalize().unwrap().join("own"), outside),
+                Ok(4)
+            );
+        }
+        for elsewhere in [folder.path().join("other"), scene.join("../other")] {
+            let text = ask(elsewhere.clone(), false).unwrap_err();
+            assert!(text.contains("leads out of the scene's folder"), "{text}");
+            assert_eq!(ask(elsewhere, true), Ok(5));
+        }
     }
 
     #[cfg(unix)]

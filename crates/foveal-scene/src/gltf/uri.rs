@@ -10,7 +10,7 @@ use percent_encoding::percent_decode_str;
 pub(crate) enum Uri {
     /// The bytes of a data URI.
     Data(Vec<u8>),
-    /// A relative path, percent-decoded.
+    /// A path, percent-decoded.
     File(String),
 }
 
