@@ -169,9 +169,11 @@ fn import(
     #[cfg(not(target_arch = "wasm32"))]
     if let Some(format) = crate::other::Format::of(file, bytes) {
         let watch = crate::timings::Stopwatch::start();
-        let (glb, notes) = format.to_glb(bytes, file, options, resolver)?;
+        let mut converted = format.to_glb(bytes, file, options, resolver)?;
+        let notes = std::mem::take(&mut converted.notes);
         let convert_ms = watch.elapsed_ms();
-        let mut scene = gltf::import(&glb, file, notes, options, resolver)?;
+        let beside = |path: &str| converted.resolve(path, resolver);
+        let mut scene = gltf::import(&converted.glb, file, notes, options, &beside)?;
         scene.timings.parse_ms += convert_ms;
         return Ok(scene);
     }

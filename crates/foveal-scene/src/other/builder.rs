@@ -2,8 +2,12 @@
 
 use std::collections::HashMap;
 use std::fmt::{Display, Write as _};
+use std::path::Path;
 
 use serde_json::json;
+
+use super::{Converted, Refusal};
+use crate::Warning;
 
 /// Component types of accessors (glTF 2.0 specification, section 3.6.2.2).
 const UNSIGNED_INT: u32 = 5125;
@@ -38,6 +42,8 @@ pub(super) struct Builder {
     meshes: List,
     nodes: List,
     texture_of: HashMap<String, usize>,
+    /// Of paths of pictures: where a picture may lie instead.
+    elsewhere: HashMap<String, String>,
 }
 
 /// What has no material of its own: no metal, and seen from both sides.
@@ -69,17 +75,26 @@ impl Builder {
         self.accessor(bytes, UNSIGNED_INT, "SCALAR", values.len())
     }
 
-    /// The number of a texture that shows the picture in a file beside the scene.
-    pub(super) fn texture(&mut self, file: &str) -> usize {
-        if let Some(number) = self.texture_of.get(file) {
+    /// The number of a texture that shows the picture in a file: in `folder`, else beside the scene.
+    pub(super) fn texture(&mut self, folder: &str, file: &str) -> usize {
+        // Exporters for Windows write its separators.
+        let file = file.replace('\\', "/");
+        let in_folder = !folder.is_empty() && !Path::new(&file).has_root();
+        let path = if in_folder {
+            format!("{folder}/{file}")
+        } else {
+            file.clone()
+        };
+        if let Some(number) = self.texture_of.get(&path) {
             return *number;
         }
-        // Exporters for Windows write its separators.
-        let uri = file.replace('\\', "/");
-        let uri = percent_encoding::utf8_percent_encode(&uri, ESCAPED).to_string();
+        let uri = percent_encoding::utf8_percent_encode(&path, ESCAPED).to_string();
         let image = self.images.push(json!({ "uri": uri }));
         let number = self.textures.push(json!({ "source": image }));
-        self.texture_of.insert(file.to_owned(), number);
+        if in_folder {
+            self.elsewhere.insert(path.clone(), file);
+        }
+        self.texture_of.insert(path, number);
         number
     }
 
@@ -98,8 +113,18 @@ impl Builder {
             .push(format_args!("{{\"name\":{name},\"mesh\":{mesh}}}"));
     }
 
-    /// The file's bytes; an error where they are more than a GLB may have.
-    pub(super) fn glb(mut self) -> Result<Vec<u8>, String> {
+    /// The file, and what it leaves out; an error where it has more bytes than a GLB may have.
+    pub(super) fn finish(mut self, notes: Vec<Warning>) -> Result<Converted, Refusal> {
+        let elsewhere = std::mem::take(&mut self.elsewhere);
+        let too_large = |cause| Refusal::TooLarge(None, cause);
+        Ok(Converted {
+            glb: self.glb().map_err(too_large)?,
+            notes,
+            elsewhere,
+        })
+    }
+
+    fn glb(mut self) -> Result<Vec<u8>, String> {
         let mut roots = List::default();
         for node in 0..self.nodes.len {
             roots.push(node);

@@ -71,13 +71,14 @@ impl<'a> Materials<'a> {
         }
         let bytes = (self.resolver)(name)?;
         self.libraries.insert(name.to_owned());
+        let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder);
         for material in mtl::parse(&bytes) {
             let Some(&number) = self.number_of.get(material.name.as_str()) else {
                 continue;
             };
             // The first of a name holds.
             if self.found[number].is_none() {
-                let surface = material.surface(self.builder, self.notes);
+                let surface = material.surface(folder, self.builder, self.notes);
                 self.found[number] = Some(self.builder.material(&surface));
             }
         }

@@ -11,6 +11,7 @@ mod ply;
 #[cfg(test)]
 mod tests;
 
+use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::error::Limit;
@@ -24,6 +25,25 @@ pub(crate) enum Format {
     Obj,
     /// The Stanford polygon format.
     Ply,
+}
+
+/// A file as a GLB in memory.
+pub(crate) struct Converted {
+    pub(crate) glb: Vec<u8>,
+    /// What it leaves out.
+    pub(crate) notes: Vec<Warning>,
+    /// Of paths of pictures: where a picture may lie instead.
+    elsewhere: HashMap<String, String>,
+}
+
+impl Converted {
+    /// The bytes of a file that the GLB names.
+    pub(crate) fn resolve(&self, path: &str, resolver: &Resolver<'_>) -> Result<Vec<u8>, String> {
+        resolver(path).or_else(|cause| match self.elsewhere.get(path) {
+            Some(other) => resolver(other).map_err(|_| cause),
+            None => Err(cause),
+        })
+    }
 }
 
 /// Why a file cannot be converted.
@@ -64,14 +84,14 @@ impl Format {
         }
     }
 
-    /// The same scene as a GLB file, and what it leaves out.
+    /// The same scene as a GLB file.
     pub(crate) fn to_glb(
         self,
         bytes: &[u8],
         file: &str,
         options: &LoadOptions,
         resolver: &Resolver<'_>,
-    ) -> Result<(Vec<u8>, Vec<Warning>), SceneError> {
+    ) -> Result<Converted, SceneError> {
         let convert = || match self {
             Self::Obj => obj::convert(bytes, options, resolver),
             Self::Ply => ply::convert(bytes, options),

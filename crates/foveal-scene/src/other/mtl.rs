@@ -137,8 +137,8 @@ fn map(text: &str) -> Option<Map> {
 impl Map {
     /// A reference to the texture. Rows are counted from below here, from above in glTF: `s v + o`
     /// becomes `s v + 1 - s - o`.
-    fn texture(&self, builder: &mut Builder) -> Value {
-        let mut texture = json!({ "index": builder.texture(&self.file) });
+    fn texture(&self, folder: &str, builder: &mut Builder) -> Value {
+        let mut texture = json!({ "index": builder.texture(folder, &self.file) });
         if self.scale != [1.0; 2] || self.offset != [0.0; 2] {
             let offset = [self.offset[0], 1.0 - self.scale[1] - self.offset[1]];
             texture["extensions"] = json!({ "KHR_texture_transform": {
@@ -154,7 +154,13 @@ impl Material {
     /// or 1 - Tr opacity, Ns the exponent of a Blinn-Phong lobe; Pm, Pr and norm, the format's
     /// extension for physically based materials, are taken as they are. A lobe of exponent n has the
     /// roughness `sqrt(2 / (n + 2))`, squared in glTF's terms (Walter et al. 2007, section 5.2).
-    pub(super) fn surface(&self, builder: &mut Builder, notes: &mut Vec<Warning>) -> Value {
+    /// `folder` is the library's.
+    pub(super) fn surface(
+        &self,
+        folder: &str,
+        builder: &mut Builder,
+        notes: &mut Vec<Warning>,
+    ) -> Value {
         let unit = |x: f32| x.clamp(0.0, 1.0);
         // `Tr 1` alone is what MeshLab writes for opaque surfaces.
         let transparency = self.transparency.filter(|tr| *tr < 1.0);
@@ -178,13 +184,13 @@ impl Material {
             "doubleSided": true,
         });
         if let Some(map) = &self.diffuse_map {
-            surface["pbrMetallicRoughness"]["baseColorTexture"] = map.texture(builder);
+            surface["pbrMetallicRoughness"]["baseColorTexture"] = map.texture(folder, builder);
         }
         if let Some(map) = &self.normal_map {
-            surface["normalTexture"] = map.texture(builder);
+            surface["normalTexture"] = map.texture(folder, builder);
         }
         if let Some(map) = &self.emissive_map {
-            surface["emissiveTexture"] = map.texture(builder);
+            surface["emissiveTexture"] = map.texture(folder, builder);
         }
         let by_default = self.emissive_map.as_ref().map(|_| [1.0; 3]);
         if let Some(emission) = self.emissive.or(by_default) {

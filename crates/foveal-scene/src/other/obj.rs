@@ -12,7 +12,7 @@ use serde_json::json;
 use super::builder::{Builder, plain_surface};
 use super::libraries::{MAX_LIBRARIES, Materials, TOO_MANY_LIBRARIES};
 use super::lines::{Line, lines, name_of};
-use super::{Refusal, check_memory, linear};
+use super::{Converted, Refusal, check_memory, linear};
 use crate::error::Limit;
 use crate::gltf::Resolver;
 use crate::{Code, LoadOptions, Warning};
@@ -83,7 +83,7 @@ pub(super) fn convert(
     bytes: &[u8],
     options: &LoadOptions,
     resolver: &Resolver<'_>,
-) -> Result<(Vec<u8>, Vec<Warning>), Refusal> {
+) -> Result<Converted, Refusal> {
     let file = File::parse(bytes, options)?;
     let mut notes = Vec::new();
     let mut builder = Builder::default();
@@ -117,12 +117,7 @@ pub(super) fn convert(
             .unwrap_or_else(|| *plain.get_or_insert_with(|| builder.material(&plain_surface())));
         file.add_group(group, material, &mut builder, &mut notes);
     }
-    Ok((builder.glb().map_err(too_large)?, notes))
-}
-
-/// A file whose glTF is too long.
-pub(super) fn too_large(cause: String) -> Refusal {
-    Refusal::TooLarge(None, cause)
+    builder.finish(notes)
 }
 
 impl File {

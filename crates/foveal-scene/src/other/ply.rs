@@ -7,8 +7,8 @@ use ply_rs_bw::ply::{Header, Property, PropertyAccess, PropertyAccessResult};
 use serde_json::json;
 
 use super::builder::{Builder, plain_surface};
-use super::obj::{LINES, POINTS, TRIANGLES, too_large};
-use super::{Refusal, check_memory, linear};
+use super::obj::{LINES, POINTS, TRIANGLES};
+use super::{Converted, Refusal, check_memory, linear};
 use crate::error::Limit;
 use crate::{Code, LoadOptions, Warning};
 
@@ -18,10 +18,7 @@ const MAX_LINES: usize = 10_000;
 
 /// The mesh as one object; polygons are cut into fans. Without faces its edges become lines, and
 /// without these its vertices points.
-pub(super) fn convert(
-    bytes: &[u8],
-    options: &LoadOptions,
-) -> Result<(Vec<u8>, Vec<Warning>), Refusal> {
+pub(super) fn convert(bytes: &[u8], options: &LoadOptions) -> Result<Converted, Refusal> {
     check_header(bytes)?;
     let mut reader = Reader::new(Cursor::new(bytes));
     let header = Parser::<Skipped>::new()
@@ -98,7 +95,7 @@ pub(super) fn convert(
         };
         let file = header.comments.iter().find_map(named);
         if let Some(file) = file.filter(|_| is_mapped) {
-            let texture = json!({ "index": builder.texture(&file) });
+            let texture = json!({ "index": builder.texture("", &file) });
             surface["pbrMetallicRoughness"]["baseColorTexture"] = texture;
         }
         let mut primitive = json!({
@@ -109,7 +106,7 @@ pub(super) fn convert(
         }
         builder.object("", vec![primitive]);
     }
-    Ok((builder.glb().map_err(too_large)?, notes))
+    builder.finish(notes)
 }
 
 /// Refuses headers that the parser would take long for.

@@ -1,5 +1,6 @@
 //! Material libraries, and what they name.
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::{HOUSE, HOUSE_MTL, load};
@@ -35,4 +36,32 @@ fn libraries_beyond_the_sixty_fourth_of_a_line_are_not_read() {
         (warning.code, &*warning.text),
         (Code::MaterialUnreadable, sentence)
     );
+}
+
+/// Files that are asked for where a library in a folder names a picture.
+fn asked_for(picture: &str, in_folder: bool) -> Vec<String> {
+    let asked = Mutex::new(Vec::new());
+    let library = HOUSE_MTL.replace("brick.png", picture);
+    let resolver = |name: &str| {
+        asked.lock().unwrap().push(name.to_owned());
+        match name {
+            "sub/house.mtl" => Ok(library.clone().into_bytes()),
+            "sub/wood.png" if in_folder => Ok(b"no picture".to_vec()),
+            _ => Err("no such file".to_owned()),
+        }
+    };
+    let text = HOUSE.replace("house.mtl", "sub\\house.mtl");
+    load_bytes(text.as_bytes(), "a.obj", &LoadOptions::default(), &resolver).unwrap();
+    asked.into_inner().unwrap()
+}
+
+#[test]
+fn pictures_are_looked_for_beside_their_library_and_then_beside_the_scene() {
+    let library = "sub/house.mtl";
+    assert_eq!(asked_for("wood.png", true), [library, "sub/wood.png"]);
+    assert_eq!(
+        asked_for("wood.png", false),
+        [library, "sub/wood.png", "wood.png"]
+    );
+    assert_eq!(asked_for("/wood.png", false), [library, "/wood.png"]);
 }
