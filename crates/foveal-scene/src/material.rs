@@ -78,6 +78,8 @@ pub struct Material {
     /// How far a pose has turned the texture coordinates that generated tangents follow since the
     /// tangents were made, in radians; 0 for a mesh with tangents of its own.
     pub tangent_turn_rad: f32,
+    /// Whether a pose has mirrored these coordinates since: the bitangents point the other way.
+    pub tangents_mirrored: bool,
 }
 
 /// What poses change of a material, where a renderer that prepares a shader for each kind of material
@@ -201,6 +203,7 @@ impl Default for Material {
             procedural: None,
             animated: AnimatedParts::default(),
             tangent_turn_rad: 0.0,
+            tangents_mirrored: false,
         }
     }
 }

@@ -289,7 +289,7 @@ impl Rigging {
             let slot = document.materials[*number as usize].tangent_slot();
             let moved = slot.filter(|_| !own.contains(number));
             let moved = moved.and_then(|slot| state.transforms.iter().find(|(s, _)| *s == slot));
-            state.tangents = moved.map(|(slot, transform)| (*slot, transform.rotation_rad));
+            state.tangents = moved.map(|(slot, transform)| (*slot, *transform));
         }
         for (i, (_, number)) in carriers.cameras.iter().enumerate() {
             if let Some(camera) = scene.cameras.get(i).filter(|_| cameras.contains(number)) {

@@ -11,6 +11,7 @@ use bevy_mikktspace::{Geometry, TangentSpace};
 use glam::{Mat2, Mat3, Vec2, Vec3};
 
 use crate::Vertex;
+use crate::pose::turn_of_uvs;
 
 /// Most triangles around a vertex: bounds the recursion.
 const MAX_FAN: u64 = 1024;
@@ -30,11 +31,10 @@ impl TangentUvs {
     /// A shift changes no direction, nor does a stretch along u or v: with these alone, meshes are
     /// shared.
     pub(crate) fn new(slot: usize, transform: Mat3) -> Self {
-        let turn = Mat2::from_mat3(transform);
+        let turn = turn_of_uvs(transform);
         let [[a, b], [c, d]] = turn.to_cols_array_2d();
         let stretches = b == 0.0 && c == 0.0 && a > 0.0 && d > 0.0;
-        let turns = turn.is_finite() && turn.determinant() != 0.0 && !stretches;
-        let turn = if turns { turn } else { Mat2::IDENTITY };
+        let turn = if stretches { Mat2::IDENTITY } else { turn };
         let turn = turn.to_cols_array().map(f32::to_bits);
         Self { slot, turn }
     }

@@ -12,7 +12,7 @@ pub use clip::Clip;
 pub(crate) use deform::{Deformer, Influences, MorphTarget, Shape, Skin};
 pub(crate) use properties::{
     CameraPart, Factor, LightPart, MaterialPart, MaterialState, TextureSlot, UvPart, UvTransform,
-    emission,
+    emission, turn_of_uvs,
 };
 pub use rig::Rig;
 pub(crate) use rig::{Binding, Node, RigData, world_from_nodes};

@@ -2,7 +2,7 @@
 //! what a value makes of them. Values are taken as the importer takes those of the file, so that a
 //! pose is what a file with these values is.
 
-use glam::{Mat3, Vec2, Vec3, Vec4};
+use glam::{Mat2, Mat3, Vec2, Vec3, Vec4};
 
 use crate::{AlphaMode, Light, LightKind, Material, Projection, TextureRef};
 
@@ -119,6 +119,16 @@ impl UvTransform {
     }
 }
 
+/// What a transform of texture coordinates does to directions; nothing where it leaves none.
+pub(crate) fn turn_of_uvs(transform: Mat3) -> Mat2 {
+    let turn = Mat2::from_mat3(transform);
+    if turn.is_finite() && turn.determinant() != 0.0 {
+        turn
+    } else {
+        Mat2::IDENTITY
+    }
+}
+
 impl TextureSlot {
     /// The texture that a material has there.
     fn of(self, material: &mut Material) -> Option<&mut TextureRef> {
@@ -154,8 +164,8 @@ pub(crate) struct MaterialState {
     pub(crate) emissive_strength: f32,
     /// Of the textures whose place moves.
     pub(crate) transforms: Vec<(TextureSlot, UvTransform)>,
-    /// The texture that generated tangents follow, and its rotation for which they were made.
-    pub(crate) tangents: Option<(TextureSlot, f32)>,
+    /// The texture that generated tangents follow, and where it was read when they were made.
+    pub(crate) tangents: Option<(TextureSlot, UvTransform)>,
 }
 
 impl MaterialState {
@@ -237,12 +247,22 @@ impl MaterialState {
                 texture.uv_transform = transform.matrix();
             }
             if let Some((_, made_for)) = self.tangents.filter(|(of, _)| of == slot) {
-                let turn = transform.rotation_rad - made_for;
-                self.material.tangent_turn_rad = if turn.is_finite() { turn } else { 0.0 };
+                turn_tangents(&mut self.material, &made_for, transform);
             }
         }
         self.material
     }
+}
+
+/// Turns generated tangents from where u grew on the surface to where it grows.
+fn turn_tangents(material: &mut Material, before: &UvTransform, now: &UvTransform) {
+    let [before, now] = [before, now].map(|transform| turn_of_uvs(transform.matrix()));
+    let signs = [before, now].map(|turn| turn.determinant().signum());
+    // By the inverse: u grows and v does not.
+    let angles = [(before, signs[0]), (now, signs[1])]
+        .map(|(turn, sign)| (sign * Vec2::new(turn.y_axis.y, -turn.x_axis.y)).to_angle());
+    material.tangent_turn_rad = signs[0] * (angles[1] - angles[0]);
+    material.tangents_mirrored = signs[0] != signs[1];
 }
 
 /// Emission of its two factors. An infinite one would be NaN where its texture is black.

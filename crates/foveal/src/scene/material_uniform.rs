@@ -19,11 +19,12 @@ pub(crate) struct MaterialUniform {
     pub(crate) layers: [u32; 2],
     pub(crate) number: u32,
     pub(crate) procedural_seed: u32,
+    pub(crate) tangent_turn: [f32; 3],
     pub(crate) procedural_frequency: f32,
-    pub(crate) without_lobes: f32,
-    pub(crate) tangent_turn: [f32; 2],
     pub(crate) specular_color: [f32; 3],
     pub(crate) specular: f32,
+    pub(crate) without_lobes: f32,
+    pub(crate) padding: [u32; 3],
 }
 
 /// Places for textures in a material.
@@ -117,11 +118,18 @@ impl MaterialUniform {
             ],
             number,
             procedural_seed: material.procedural.map_or(0, |p| p.seed),
+            tangent_turn: Vec2::from_angle(material.tangent_turn_rad)
+                .extend(if material.tangents_mirrored {
+                    -1.0
+                } else {
+                    1.0
+                })
+                .to_array(),
             procedural_frequency: material.procedural.map_or(0.0, |p| p.frequency),
-            without_lobes: f32::from(u8::from(!material.has_lobes() || material.unlit)),
-            tangent_turn: Vec2::from_angle(material.tangent_turn_rad).to_array(),
             specular_color: (material.specular_color * material.ior_reflectance()).to_array(),
             specular: material.specular,
+            without_lobes: f32::from(u8::from(!material.has_lobes() || material.unlit)),
+            padding: [0; 3],
         }
     }
 }

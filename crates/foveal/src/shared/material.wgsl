@@ -47,16 +47,16 @@ struct Material {
     // Which of the scene's materials it is.
     number: u32,
     procedural_seed: u32,
+    // Cosine and sine of the angle by which the coordinates that tangents follow have turned since
+    // the tangents were made; -1 where they have been mirrored, else 1.
+    tangent_turn: vec3f,
     // Lumps per metre.
     procedural_frequency: f32,
-    // 0 where the surface has lobes, which are drawn forward; else 1.
-    without_lobes: f32,
-    // Cosine and sine of the angle by which the coordinates that tangents follow have turned since
-    // the tangents were made.
-    tangent_turn: vec2f,
     // Reflectance at right angles of what is not metal, and at grazing angles: factor of both.
     specular_color: vec3f,
     specular: f32,
+    // 0 where the surface has lobes, which are drawn forward; else 1.
+    without_lobes: f32,
 }
 
 // The unit vector above a plane that has this x and y. Never in the plane: scaled by 0 it still has a
@@ -85,5 +85,6 @@ fn uv_of(slot: u32, uv: vec4f) -> vec2f {
 // A tangent that follows the coordinates' turn; w is the bitangent's sign.
 fn turned(normal: vec3f, tangent: vec4f) -> vec4f {
     let bitangent = cross(normal, tangent.xyz) * tangent.w;
-    return vec4f(material.tangent_turn.x * tangent.xyz - material.tangent_turn.y * bitangent, tangent.w);
+    let turn = material.tangent_turn;
+    return vec4f(turn.x * tangent.xyz - turn.y * bitangent, turn.z * tangent.w);
 }

@@ -184,11 +184,11 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             layers,
             number,
             procedural_seed,
-            procedural_frequency,
-            without_lobes,
             tangent_turn,
+            procedural_frequency,
             specular_color,
             specular,
+            without_lobes,
         ]
     );
     assert_same_layout!(
