@@ -7,6 +7,7 @@ mod lines;
 mod mtl;
 mod obj;
 mod ply;
+mod ply_text;
 
 #[cfg(test)]
 mod tests;

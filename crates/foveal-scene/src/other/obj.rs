@@ -366,7 +366,8 @@ impl File {
     }
 }
 
-fn not_a_number(word: &str) -> String {
+/// What is said of a word that should be a number.
+pub(super) fn not_a_number(word: &str) -> String {
     let word: String = word.chars().take(40).collect();
     format!("\"{word}\" is not a number")
 }

@@ -1,14 +1,17 @@
-//! The Stanford polygon format, text or binary, read by the crate `ply-rs-bw`.
+//! The Stanford polygon format, text or binary. The crate `ply-rs-bw` reads headers and binary
+//! elements.
 
 use std::io::Cursor;
 
 use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{Header, Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::ply::{
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult,
+};
 use serde_json::json;
 
 use super::builder::{Builder, plain_surface};
 use super::obj::{LINES, POINTS, TRIANGLES};
-use super::{Converted, Refusal, check_memory, linear};
+use super::{Converted, Refusal, check_memory, linear, ply_text};
 use crate::error::Limit;
 use crate::{Code, LoadOptions, Warning};
 
@@ -28,25 +31,11 @@ pub(super) fn convert(bytes: &[u8], options: &LoadOptions) -> Result<Converted, 
     let (mut vertices, mut faces, mut edges) = (Vec::new(), Vec::new(), Vec::new());
     for (name, element) in &header.elements {
         match name.as_str() {
-            "vertex" => {
-                vertices = Parser::<Corner>::new()
-                    .read_payload_for_element(&mut reader, element, &header)
-                    .map_err(|error| short(&error))?;
-            }
-            "face" => {
-                faces = Parser::<Face>::new()
-                    .read_payload_for_element(&mut reader, element, &header)
-                    .map_err(|error| short(&error))?;
-            }
-            "edge" => {
-                edges = Parser::<Edge>::new()
-                    .read_payload_for_element(&mut reader, element, &header)
-                    .map_err(|error| short(&error))?;
-            }
+            "vertex" => vertices = elements(&mut reader, element, &header)?,
+            "face" => faces = elements(&mut reader, element, &header)?,
+            "edge" => edges = elements(&mut reader, element, &header)?,
             _ => {
-                Parser::<Skipped>::new()
-                    .read_payload_for_element(&mut reader, element, &header)
-                    .map_err(|error| short(&error))?;
+                elements::<Skipped>(&mut reader, element, &header)?;
             }
         }
     }
@@ -107,6 +96,19 @@ pub(super) fn convert(bytes: &[u8], options: &LoadOptions) -> Result<Converted, 
         builder.object("", vec![primitive]);
     }
     builder.finish(notes)
+}
+
+/// Reads all elements of a kind.
+fn elements<E: PropertyAccess>(
+    reader: &mut Reader<Cursor<&[u8]>>,
+    kind: &ElementDef,
+    header: &Header,
+) -> Result<Vec<E>, String> {
+    if header.encoding == Encoding::Ascii {
+        return ply_text::elements(reader.get_mut(), kind);
+    }
+    let found = Parser::new().read_payload_for_element(reader, kind, header);
+    found.map_err(|error| short(&error))
 }
 
 /// Refuses headers that the parser would take long for.

@@ -396,7 +396,22 @@ fn broken_files_are_named_with_their_format() {
         "a.ply is not PLY: element x has no properties"
     );
     let cut = &SQUARE[..SQUARE.len() - 20];
-    assert!(!refusal("a.ply", cut).contains('\n'));
+    assert_eq!(
+        refusal("a.ply", cut),
+        "a.ply is not PLY: line 19: has too few numbers"
+    );
+    assert_eq!(
+        refusal("a.ply", &SQUARE.replace("1 1 0", "1 x 0")),
+        "a.ply is not PLY: line 18: \"x\" is not a number"
+    );
+    assert_eq!(
+        refusal("a.ply", &SQUARE.replace("3 0 1 9", "300 0 1 9")),
+        "a.ply is not PLY: line 21: has too few numbers"
+    );
+    assert_eq!(
+        refusal("a.ply", &SQUARE.replace("3 0 1 9\n", "")),
+        "a.ply is not PLY: has 1 elements face instead of 2"
+    );
 }
 
 #[test]
