@@ -35,13 +35,14 @@ impl DracoDef {
         indices: Option<u32>,
     ) -> Parsed<Self> {
         let ids = o.need("attributes", o.object("attributes")?)?;
+        let read = attributes.read();
         let mut pairs = Vec::new();
         for (name, _) in ids.entries() {
             let id = ids.index(name, u32::MAX as usize);
             let accessor = names.uint(name)?;
             if let (Some(id), Some(accessor)) = (id.map_err(|e| e.under("attributes"))?, accessor) {
                 // Only what is read is worth decoding; the others may be of any type.
-                if attributes.read(accessor) {
+                if read.contains(&accessor) {
                     pairs.push((accessor as u32, id));
                 }
             }

@@ -1,5 +1,7 @@
 //! Definitions of meshes and their primitives.
 
+use std::collections::HashSet;
+
 use super::document::Counts;
 use super::draco::DracoDef;
 use super::json::Obj;
@@ -58,9 +60,12 @@ pub(crate) struct Attributes {
 }
 
 impl Attributes {
-    /// Whether one of them is this accessor.
-    pub(crate) fn read(&self, accessor: u64) -> bool {
-        self.clone().accessors().any(|a| u64::from(*a) == accessor)
+    /// The accessors of all of them.
+    pub(crate) fn read(&self) -> HashSet<u64> {
+        let mut copy = self.clone();
+        copy.accessors()
+            .map(|accessor| u64::from(*accessor))
+            .collect()
     }
 
     fn accessors(&mut self) -> impl Iterator<Item = &mut u32> {
