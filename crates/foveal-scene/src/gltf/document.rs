@@ -3,6 +3,8 @@
 //! Reading is strict about types and references and lenient about everything else that does not
 //! stand in the way of a picture (empty arrays, missing `min`/`max`, undeclared extensions).
 
+use std::collections::HashSet;
+
 use serde_json::Value;
 
 use super::accessor::Accessor;
@@ -18,7 +20,7 @@ use super::meshopt::Coded;
 use super::nodes::NodeDef;
 use super::skins::SkinDef;
 use crate::error::{Flaw, Parsed};
-use crate::pose::Target;
+use crate::pose::{MaterialPart, Target};
 use crate::{Code, Sampler, Warning};
 
 /// How many of each thing there are; references are checked against these.
@@ -181,6 +183,26 @@ impl Document {
             mesh.choose_variant(number as u32);
         }
         Ok(())
+    }
+
+    /// Materials whose generated tangents an animation turns.
+    pub(crate) fn turning_materials(&self) -> HashSet<u32> {
+        let meshes = self.meshes.iter();
+        let pairs = meshes.flat_map(|mesh| mesh.primitives.iter().zip(&mesh.materials));
+        let generated = pairs.filter(|(primitive, _)| !primitive.has_tangents());
+        let generated: HashSet<u32> = generated.filter_map(|(_, material)| *material).collect();
+        let turns = |number: u32, slot| {
+            let followed = || self.materials[number as usize].tangent_slot();
+            generated.contains(&number) && followed() == Some(slot)
+        };
+        let targets = self.animations.iter().flat_map(AnimationDef::targets);
+        let turned = targets.filter_map(|pointed| match pointed.target {
+            Target::Material(MaterialPart::Uv(slot, _)) => {
+                Some(pointed.number).filter(|number| turns(*number, slot))
+            }
+            _ => None,
+        });
+        turned.collect()
     }
 }
 

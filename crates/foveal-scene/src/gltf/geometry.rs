@@ -83,9 +83,7 @@ pub(crate) fn build(
     } else {
         normals::smooth(&mut vertices, &indices, |_| true);
     }
-    // Tangents of the file belong to normals of the file.
-    let has_tangents = def.attributes.tangent.is_some() && def.attributes.normal.is_some();
-    let generates_tangents = makes_triangles && !has_tangents;
+    let generates_tangents = makes_triangles && !def.has_tangents();
     if let Some(uvs) = request.tangents_for.filter(|_| generates_tangents)
         && let Some(split) = tangents::generate(&mut vertices, &mut indices, uvs)
     {

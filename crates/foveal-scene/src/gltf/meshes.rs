@@ -96,6 +96,11 @@ pub(crate) struct PrimitiveDef {
 }
 
 impl PrimitiveDef {
+    /// Whether its tangents are the file's: they belong to normals of the file.
+    pub(crate) fn has_tangents(&self) -> bool {
+        self.attributes.tangent.is_some() && self.attributes.normal.is_some()
+    }
+
     /// Whether it has morph targets or joints.
     pub(crate) fn deforms(&self) -> bool {
         !self.targets.is_empty() || self.attributes.joints.iter().flatten().count() > 0

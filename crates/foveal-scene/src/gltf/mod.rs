@@ -52,7 +52,7 @@ pub(crate) use lights::place as place_light;
 pub(crate) use nodes::{all_the_way_up, rotation};
 pub(crate) use normals::plane_normal;
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use buffers::Buffers;
@@ -235,7 +235,8 @@ fn build(
     scene.objects = placed.objects;
     scene.instances = placed.instances;
     name_objects(&mut scene, document);
-    let carriers = place_cameras_and_lights(&mut scene, document, &hierarchy, &world, warn);
+    let mut carriers = place_cameras_and_lights(&mut scene, document, &hierarchy, &world, warn);
+    carriers.materials = geometry.copies;
     rig.finish(&mut scene, document, &shown, &placed.clouds, &carriers);
     scene.show(&hierarchy.visible);
     choose_clip(&mut scene, &options.clip)?;
@@ -311,13 +312,15 @@ fn name_objects(scene: &mut Scene, document: &Document) {
     }
 }
 
-/// Nodes of the scene's cameras, and numbers of cameras and lights in the file.
+/// Nodes of the scene's cameras, and numbers of cameras, lights and materials in the file.
 #[derive(Default)]
 struct Carriers {
     /// Of each camera: its node, and its number.
     cameras: Vec<(u32, u32)>,
     /// Of each light: its number.
     lights: Vec<u32>,
+    /// Of each copied material: its number, and the copy's.
+    materials: HashMap<u32, u32>,
 }
 
 /// Places the cameras of all nodes that the scene reaches, and the lights of those that are shown:

@@ -22,6 +22,15 @@ pub(crate) struct Geometry {
     requests: Vec<(Request, String)>,
     numbers: HashMap<Request, u32>,
     names: Vec<String>,
+    /// Of materials whose generated tangents turn in poses, by their numbers: copies for meshes whose
+    /// tangents are the file's.
+    pub(crate) copies: HashMap<u32, u32>,
+}
+
+/// Adds a material to the scene and gives its number.
+fn add(scene: &mut Scene, material: Material) -> u32 {
+    scene.materials.push(material);
+    scene.materials.len() as u32 - 1
 }
 
 impl Geometry {
@@ -34,6 +43,7 @@ impl Geometry {
         scene: &mut Scene,
     ) -> Parsed<Vec<Shown>> {
         let document = reader.document;
+        let turning = document.turning_materials();
         let mut default_material = None;
         let mut parts_of: HashMap<u32, Vec<Part>> = HashMap::new();
         let mut shown = Vec::new();
@@ -44,12 +54,14 @@ impl Geometry {
                 (0..def.primitives.len())
                     .map(|p| Part {
                         mesh: self.number(document, mesh, p),
-                        material: def.materials[p].unwrap_or_else(|| {
-                            *default_material.get_or_insert_with(|| {
-                                scene.materials.push(Material::default());
-                                scene.materials.len() as u32 - 1
-                            })
-                        }),
+                        material: match def.materials[p] {
+                            Some(m) if def.primitives[p].has_tangents() && turning.contains(&m) => {
+                                self.copy_of(m, scene)
+                            }
+                            Some(material) => material,
+                            None => *default_material
+                                .get_or_insert_with(|| add(scene, Material::default())),
+                        },
                     })
                     .collect()
             });
@@ -71,6 +83,11 @@ impl Geometry {
             .take(bytes, "the meshes of its nodes")
             .map_err(|e| e.under("nodes"))?;
         Ok(shown)
+    }
+
+    fn copy_of(&mut self, material: u32, scene: &mut Scene) -> u32 {
+        let copy = || add(scene, scene.materials[material as usize].clone());
+        *self.copies.entry(material).or_insert_with(copy)
     }
 
     /// Asks for all primitives of a mesh.

@@ -280,17 +280,14 @@ impl Rigging {
                 state.transforms.push((slot, transform));
             }
         }
-        // Tangents of the file are taken as they are.
-        let meshes = document.meshes.iter();
-        let pairs = meshes.flat_map(|mesh| mesh.primitives.iter().zip(&mesh.materials));
-        let own = pairs.filter(|(primitive, _)| primitive.attributes.tangent.is_some());
-        let own: HashSet<u32> = own.filter_map(|(_, material)| *material).collect();
+        let turning = document.turning_materials();
         for (number, state) in &mut data.materials {
             let slot = document.materials[*number as usize].tangent_slot();
-            let moved = slot.filter(|_| !own.contains(number));
+            let moved = slot.filter(|_| turning.contains(number));
             let moved = moved.and_then(|slot| state.transforms.iter().find(|(s, _)| *s == slot));
             state.tangents = moved.map(|(slot, transform)| (*slot, *transform));
         }
+        data.copies.clone_from(&carriers.materials);
         for (i, (_, number)) in carriers.cameras.iter().enumerate() {
             if let Some(camera) = scene.cameras.get(i).filter(|_| cameras.contains(number)) {
                 data.zooming.push((i as u32, *number));

@@ -65,6 +65,8 @@ pub(crate) struct RigData {
     pub(crate) emission: BTreeMap<u32, Light>,
     /// Materials that change, at rest, by their number.
     pub(crate) materials: BTreeMap<u32, MaterialState>,
+    /// Of some of them, by their number: a copy that differs in that its tangents do not turn.
+    pub(crate) copies: HashMap<u32, u32>,
     /// Of each node whether it is visible at rest, itself; `None` where that never changes.
     pub(crate) visible: Option<Vec<bool>>,
     /// Bounding points of rigid meshes that move, by mesh.
@@ -211,10 +213,22 @@ impl RigData {
             }
         }
         for (number, state) in materials {
-            if let Some(material) = scene.materials.get_mut(number as usize) {
-                let name = std::mem::take(&mut material.name);
-                *material = state.finish();
-                material.name = name;
+            let copy = self.copies.get(&number).map(|copy| {
+                let tangents = None;
+                (
+                    *copy,
+                    MaterialState {
+                        tangents,
+                        ..state.clone()
+                    },
+                )
+            });
+            for (number, state) in copy.into_iter().chain([(number, state)]) {
+                if let Some(material) = scene.materials.get_mut(number as usize) {
+                    let name = std::mem::take(&mut material.name);
+                    *material = state.finish();
+                    material.name = name;
+                }
             }
         }
         emission.values_mut().for_each(finish_light);

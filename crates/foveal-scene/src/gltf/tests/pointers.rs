@@ -431,3 +431,49 @@ fn a_required_extension_is_no_obstacle_and_curves_may_leave_the_range_of_numbers
         }));
     }
 }
+
+/// Tangents of the file are taken as they are, and make no others of their material stay.
+#[test]
+fn generated_tangents_turn_beside_those_of_the_file() {
+    let pointer = "/materials/0/normalTexture/extensions/KHR_texture_transform/rotation";
+    let moves: Vec<Moved> = (MOVES.iter().copied())
+        .filter(|m| m.pointer == pointer)
+        .collect();
+    let turns = |edit: &dyn Fn(&mut File)| -> Vec<f32> {
+        let mut file = movable();
+        edit(&mut file);
+        hold(&mut file, &moves, 0.0);
+        animate(&mut file, &moves);
+        let mut scene = file.load();
+        scene.pose(1.0);
+        let of_first = scene.instances.iter().filter(|i| i.bounds.min.x < -1.0);
+        let materials = of_first.map(|i| &scene.materials[i.material as usize]);
+        let mapped = materials.filter(|m| m.normal_texture.is_some());
+        mapped.map(|m| m.tangent_turn_rad).collect()
+    };
+    let without = |file: &mut File, mesh: usize| {
+        let attributes = &mut file.json["meshes"][mesh]["primitives"][0]["attributes"];
+        attributes.as_object_mut().unwrap().remove("TANGENT");
+    };
+    assert_eq!(turns(&|_| {}), [0.0]);
+    let near = |turns: &[f32]| turns.len() == 1 && (turns[0] - 1.5).abs() < 1e-6;
+    assert!(near(&turns(&|file| without(file, 0))));
+    // A mesh with tangents that no node shows.
+    let found = turns(&|file| {
+        let other = file.json["meshes"][0].clone();
+        file.push("meshes", other);
+        without(file, 0);
+    });
+    assert!(near(&found), "{found:?}");
+    // One that a node shows.
+    let found = turns(&|file| {
+        let mut both = file.json["meshes"][0]["primitives"][0].clone();
+        both["attributes"]
+            .as_object_mut()
+            .unwrap()
+            .remove("TANGENT");
+        let primitives = file.json["meshes"][0]["primitives"].as_array_mut();
+        primitives.unwrap().push(both);
+    });
+    assert!(found[0] == 0.0 && near(&found[1..]), "{found:?}");
+}
