@@ -30,10 +30,10 @@ impl Occludees {
         self.recorded.extend(other.recorded);
     }
 
-    /// The objects of a scene as it is posed.
+    /// The objects of a scene as it is posed, but for those that it hides.
     pub fn of_scene(scene: &Scene) -> Self {
         let mut occludees = Self::default();
-        for object in &scene.objects {
+        for object in scene.objects.iter().filter(|object| object.visible) {
             let range = object.instances.start as usize..object.instances.end as usize;
             let instances = scene.instances.get(range).unwrap_or_default();
             let triangles: usize = instances
@@ -48,5 +48,21 @@ impl Occludees {
             occludees.ids.push((object.node, object.element));
         }
         occludees
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hidden_objects_are_not_asked_about() {
+        let mut scene = foveal_generate::cornell();
+        let all = Occludees::of_scene(&scene);
+        scene.objects[1].visible = false;
+        let shown = Occludees::of_scene(&scene);
+        let hidden = scene.objects[1].node;
+        assert_eq!(shown.boxes.len() + 1, all.boxes.len());
+        assert!(shown.ids.iter().all(|(node, _)| *node != hidden));
     }
 }

@@ -138,6 +138,14 @@ impl CullingScene {
             .is_none_or(|hidden| !hidden)
     }
 
+    /// The objects that are not drawn in this pose.
+    pub(crate) fn hidden_objects(&self) -> impl Iterator<Item = u32> {
+        (0..)
+            .zip(&self.hidden)
+            .filter(|(_, hidden)| **hidden)
+            .map(|(object, _)| object)
+    }
+
     /// The boxes of these cells, world space; none before they are placed.
     pub(crate) fn cells(&self) -> &[Aabb] {
         self.cells.as_ref().map_or(&[], Cells::boxes)

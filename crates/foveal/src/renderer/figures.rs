@@ -37,6 +37,15 @@ impl Renderer {
         }
     }
 
+    /// Objects that culling finds visible and that the pose does not show.
+    fn hidden_among_visible(&self) -> u64 {
+        let culling = self.stages.culling.as_ref();
+        let hidden = self.scene.culling.hidden_objects();
+        hidden
+            .filter(|object| culling.is_none_or(|c| c.is_visible(*object)))
+            .count() as u64
+    }
+
     /// What the CPU knows of the frame that it has just submitted.
     pub(super) fn submitted(&self, culled: CullingCounts, cpu: &CpuTimer) -> FrameStats {
         let Stages {
@@ -58,7 +67,7 @@ impl Renderer {
             width,
             height,
             cpu_ms: cpu.stages(),
-            objects_visible: culled.visible,
+            objects_visible: culled.visible.saturating_sub(self.hidden_among_visible()),
             objects_outside: culled.outside,
             objects_occluded: culled.occluded,
             objects_small: culled.small,

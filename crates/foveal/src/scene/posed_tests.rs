@@ -190,6 +190,30 @@ fn assert_alone(moves: &[Moved], settings: &Settings) {
     assert_eq!(differing, 0, "{pointer}");
 }
 
+/// Objects that a pose hides are drawn in no mode of culling.
+#[test]
+fn hidden_objects_are_not_counted_as_drawn() {
+    let hides = MOVES
+        .iter()
+        .copied()
+        .filter(|m| m.pointer.starts_with("/nodes/4/extensions"));
+    let mut scene = moving(&hides.collect::<Vec<_>>());
+    for mode in [
+        Culling::Off,
+        Culling::Frustum,
+        Culling::Occlusion,
+        Culling::Auto,
+    ] {
+        let settings = settings().with(|s| s.culling.mode = mode);
+        let drawn = [0.0, 1.0].map(|time_s| {
+            scene.pose(time_s);
+            let stats = Film::new(&scene, &settings).draw(&scene.cameras[0]);
+            stats.objects_visible
+        });
+        assert_eq!(drawn[0], drawn[1] + 1, "{mode:?}");
+    }
+}
+
 /// A move of where the normal map is read, from the file's own coordinates.
 fn of_normal_map(pointer: &'static str, from: &'static [f32], to: &'static [f32]) -> Moved {
     let kind = if from.len() == 1 { "SCALAR" } else { "VEC2" };
