@@ -4,7 +4,10 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use anyhow::{Context, bail};
-use image::ImageReader;
+use image::{ColorType, DynamicImage, ImageDecoder, ImageReader, Limits, RgbaImage};
+
+/// Most bytes of a decoded picture: twice those of 16384 x 16384 pixels of 16-bit RGBA.
+const MAX_DECODED: u64 = 4 << 30;
 
 /// A picture: sRGB RGBA8 rows, top to bottom.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,6 +41,9 @@ impl Picture {
 
     /// Reads a PNG file; 16-bit channels are rounded to 8 bits, grey becomes RGB, a missing alpha
     /// is 255.
+    ///
+    /// # Errors
+    /// Where it cannot be read, holds linear values, or takes more than 4 GiB.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let read = || -> anyhow::Result<Self> {
             let found = path.metadata()?;
@@ -48,10 +54,7 @@ impl Picture {
             if !found.is_file() {
                 bail!("it is not a regular file");
             }
-            let decoded = ImageReader::open(path)?
-                .with_guessed_format()?
-                .decode()?
-                .into_rgba8();
+            let decoded = decode(path)?;
             let (width, height) = decoded.dimensions();
             Self::from_rgba(width, height, decoded.into_raw())
         };
@@ -86,6 +89,26 @@ impl Picture {
         };
         encode(to, self.width, self.height, row_of)
     }
+}
+
+fn decode(path: &Path) -> anyhow::Result<RgbaImage> {
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MAX_DECODED);
+    let mut reader = ImageReader::open(path)?.with_guessed_format()?;
+    reader.limits(limits);
+    let format = reader.format();
+    let decoder = reader.into_decoder()?;
+    if matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F) {
+        let name = format.and_then(|format| format.extensions_str().first());
+        let name = name.map_or_else(String::new, |name| name.to_uppercase());
+        bail!("it is an {name} file of linear values; a PNG file of display values is wanted");
+    }
+    let bytes = decoder.total_bytes();
+    if bytes > MAX_DECODED {
+        let [has, most] = [bytes, MAX_DECODED].map(|bytes| bytes >> 20);
+        bail!("it takes {has} MiB decoded; the limit is {most} MiB");
+    }
+    Ok(DynamicImage::from_decoder(decoder)?.into_rgba8())
 }
 
 /// Writes RGB8 rows as a PNG, whole or not at all.
@@ -138,6 +161,19 @@ mod tests {
         };
         picture.write_rgb(&path).unwrap();
         assert_eq!(Picture::read(&path).unwrap(), picture);
+    }
+
+    /// Their values taken as display values would make other pictures of them.
+    #[test]
+    fn linear_pictures_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["exr", "hdr"] {
+            let path = folder.path().join("a").with_extension(name);
+            image::Rgb32FImage::new(4, 4).save(&path).unwrap();
+            let error = format!("{:#}", Picture::read(&path).unwrap_err());
+            let format = format!("an {} file of linear values", name.to_uppercase());
+            assert!(error.contains(&format), "{error}");
+        }
     }
 
     #[test]
