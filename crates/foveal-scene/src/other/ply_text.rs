@@ -115,7 +115,7 @@ mod tests {
         ];
         let mut binary = header("binary_little_endian").into_bytes();
         binary.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
-        let [text, binary] = [text.as_bytes(), &binary].map(|b| load(b));
+        let [text, binary] = [text.as_bytes(), &binary].map(load);
         assert_eq!(text.meshes[0].points, [0, 1]);
         assert_eq!(text.meshes, binary.meshes);
         assert_eq!(text.warnings, binary.warnings);
