@@ -5,6 +5,8 @@
 //! the same renderer, or where the device is gone a new one, draws what one draws that never failed.
 //! `FOVEAL_FAULTS=all` strikes at every call, not at some of each.
 
+mod growing;
+
 use std::sync::LazyLock;
 
 use foveal_generate as generate;
@@ -339,12 +341,16 @@ fn moved() -> Scene {
 
 #[test]
 fn a_pose_that_fails_anywhere_is_an_error_and_objects_and_lights_have_it() {
+    survives_pose(&moved());
+}
+
+/// Sets a pose that fails at each call, and draws.
+fn survives_pose(pose: &Scene) {
     let gpu = host_gpu();
     let settings = small(48, 32);
-    let pose = moved();
     let mut renderer = block_on(ready(&gpu, &settings)).expect("nothing fails");
     let calls = calls(&gpu, || {
-        block_on(renderer.update_pose(&pose)).expect("nothing fails");
+        block_on(renderer.update_pose(pose)).expect("nothing fails");
     });
     block_on(draw(&mut renderer)).expect("drawn");
     let (old, new) = (expected(&gpu, &settings), picture(&renderer));
@@ -354,7 +360,7 @@ fn a_pose_that_fails_anywhere_is_an_error_and_objects_and_lights_have_it() {
         let what = format!("call {place} of {calls}");
         let mut renderer = block_on(ready(&gpu, &settings)).expect("nothing fails");
         gpu.device.faults.arm(place, fault);
-        let failed = block_on(renderer.update_pose(&pose));
+        let failed = block_on(renderer.update_pose(pose));
         assert!(gpu.device.faults.disarm(), "{what}");
         assert_told(&what, fault, failed);
         block_on(draw(&mut renderer)).expect("memory is there again");

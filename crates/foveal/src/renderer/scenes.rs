@@ -62,6 +62,10 @@ impl Renderer {
         // The old scene may be what does not fit: the next frame mends with the new one.
         self.mend_as_memory_allows().await?;
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene");
+        if self.is_torn {
+            // Its tables may be invalid; what else binds them is mended before it is drawn with.
+            self.frame_bindings = FrameBindings::new(&self.gpu, self.environment.to_bind());
+        }
         let uploaded = SceneOnGpu::new(
             &self.gpu,
             scene,

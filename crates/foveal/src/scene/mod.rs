@@ -117,8 +117,7 @@ impl SceneOnGpu {
         check_lights(scene)?;
         let exposure_stops = settings.picture.exposure_stops;
         let lights = LightUniform::all(&scene.lights, exposure_stops);
-        let mut light_table = Table::new(gpu, "lights");
-        write_lights(gpu, &mut light_table, &lights);
+        let light_table = table_of_lights(gpu, &lights);
         let materials =
             SceneMaterials::new(gpu, scene, textures, settings, material_layout, limits)?;
         let material_families = materials.families().count() as u64;
@@ -290,8 +289,9 @@ impl SceneOnGpu {
     }
 
     /// Uploads lights and materials once more: where a call failed, theirs may have been refused.
+    /// The lights' table may be invalid, where it was to grow.
     pub(crate) fn write_posed(&mut self, gpu: &Gpu) {
-        write_lights(gpu, &mut self.light_table, &self.lights);
+        self.light_table = table_of_lights(gpu, &self.lights);
         self.materials.write_all(gpu);
     }
 
@@ -299,6 +299,12 @@ impl SceneOnGpu {
     pub(crate) fn instance_uniforms(&self) -> &[InstanceUniform] {
         &self.uniforms
     }
+}
+
+fn table_of_lights(gpu: &Gpu, lights: &[LightUniform]) -> Table {
+    let mut table = Table::new(gpu, "lights");
+    write_lights(gpu, &mut table, lights);
+    table
 }
 
 fn write_lights(gpu: &Gpu, table: &mut Table, lights: &[LightUniform]) {
