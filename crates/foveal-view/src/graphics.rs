@@ -3,6 +3,7 @@
 //! A device can be lost at any time: its driver starts anew, or the machine slept. Then all three
 //! are made again.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -30,8 +31,9 @@ impl Graphics {
     ) -> anyhow::Result<Self> {
         // OpenGL draws only to windows of a display that it was opened with.
         let display = Box::new(Arc::clone(window));
-        let instance =
-            wgpu::Instance::new(wgpu::InstanceDescriptor::new_with_display_handle(display));
+        let instance = wgpu::Instance::new(
+            wgpu::InstanceDescriptor::new_with_display_handle_from_env(display),
+        );
         let surface = instance.create_surface(Arc::clone(window))?;
         let adapter = block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
             compatible_surface: Some(&surface),
@@ -79,9 +81,9 @@ impl Graphics {
     }
 
     pub(crate) fn is_lost(&self) -> bool {
-        // A loss that nobody waits for is told when the device is asked.
-        let _ = self.device.poll(wgpu::PollType::Poll);
-        self.lost.load(Ordering::Relaxed)
+        finds_loss(&self.lost, || {
+            let _ = self.device.poll(wgpu::PollType::Poll);
+        })
     }
 
     /// What a driver does that starts anew.
@@ -143,7 +145,12 @@ impl Graphics {
         use wgpu::CurrentSurfaceTexture as Current;
         let frame = match self.surface.get_current_texture() {
             Current::Success(frame) | Current::Suboptimal(frame) => frame,
-            Current::Outdated | Current::Lost => {
+            // Only a new surface helps, and it comes with a new device.
+            Current::Lost => {
+                self.lost.store(true, Ordering::Relaxed);
+                return false;
+            }
+            Current::Outdated => {
                 self.surface.configure(&self.device, &self.configuration);
                 return false;
             }
@@ -183,5 +190,38 @@ impl Graphics {
         window.pre_present_notify();
         self.queue.present(frame);
         true
+    }
+}
+
+/// Whether the device is lost. A loss that nobody waits for is told when the device is asked; wgpu
+/// panics where it is the driver that reports it then.
+fn finds_loss(lost: &AtomicBool, ask: impl FnOnce()) -> bool {
+    if lost.load(Ordering::Relaxed) {
+        return true;
+    }
+    if catch_unwind(AssertUnwindSafe(ask)).is_err() {
+        lost.store(true, Ordering::Relaxed);
+    }
+    lost.load(Ordering::Relaxed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_driver_that_panics_when_it_is_asked_has_lost_the_device() {
+        let lost = AtomicBool::new(false);
+        assert!(!finds_loss(&lost, || ()));
+        assert!(finds_loss(&lost, || panic!("the device is lost")));
+        assert!(finds_loss(&lost, || unreachable!(
+            "a lost device is not asked"
+        )));
+    }
+
+    #[test]
+    fn a_loss_that_is_told_when_the_device_is_asked_is_found_at_once() {
+        let lost = AtomicBool::new(false);
+        assert!(finds_loss(&lost, || lost.store(true, Ordering::Relaxed)));
     }
 }
