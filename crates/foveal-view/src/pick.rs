@@ -1,7 +1,7 @@
 //! Which object is under the pointer: the nearest triangle that a ray meets.
 
 use foveal_scene::{Aabb, Mesh, Scene};
-use glam::{Mat4, Vec3};
+use glam::{Mat4, Vec3, Vec4, Vec4Swizzles};
 
 /// A half line through the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,13 +77,13 @@ impl Ray {
     /// Through a place of an eye's picture, given as fractions from its top left corner.
     pub(crate) fn through(clip_from_world: &Mat4, [x, y]: [f32; 2]) -> Self {
         let world_from_clip = clip_from_world.inverse();
-        let at =
-            |depth| world_from_clip.project_point3(Vec3::new(2.0 * x - 1.0, 1.0 - 2.0 * y, depth));
-        // Depth is reversed: the near plane, and a place twice as far.
-        let (origin, further) = (at(1.0), at(0.5));
+        let at = |depth| world_from_clip * Vec4::new(2.0 * x - 1.0, 1.0 - 2.0 * y, depth, 1.0);
+        // Depth is reversed: the near plane, and the farthest place, which for a pinhole is a
+        // direction, w = 0. Two places on the way would differ by less than they are rounded to.
+        let (near, far) = (at(1.0), at(0.0));
         Self {
-            origin,
-            direction: further - origin,
+            origin: near.xyz() / near.w,
+            direction: far.xyz() * near.w - near.xyz() * far.w,
         }
     }
 
@@ -139,7 +139,7 @@ impl Ray {
 mod tests {
     use super::*;
     use foveal_generate as generate;
-    use foveal_scene::Projection;
+    use foveal_scene::{Camera, Projection};
 
     #[test]
     fn the_nearest_surface_is_met_not_the_nearest_box() {
@@ -183,6 +183,25 @@ mod tests {
         for (place, name) in [([0.5, 0.97], "floor"), ([0.1, 0.5], "left wall")] {
             let ray = Ray::through(&scene.cameras[0].clip_from_world(1.5), place);
             assert_eq!(pick(&scene, ray).unwrap().name, name);
+        }
+    }
+
+    #[test]
+    fn rays_of_a_pinhole_far_from_the_origin_keep_their_directions() {
+        let eye = Vec3::new(5000.0, 100.0, 5000.0);
+        let mut camera = Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 1.0);
+        camera.projection = Projection::Perspective {
+            fov_y_rad: 1.0,
+            near_m: 0.01,
+        };
+        let slope = 0.5f32.tan();
+        for [x, y] in [[0.5, 0.5], [0.0, 1.0], [0.3, 0.8], [1.0, 0.1]] {
+            let ray = Ray::through(&camera.clip_from_world(1.5), [x, y]);
+            let in_view = Vec3::new((2.0 * x - 1.0) * 1.5 * slope, (1.0 - 2.0 * y) * slope, -1.0);
+            let wanted = camera.world_from_view.transform_vector3(in_view);
+            let between = ray.direction.as_dvec3().angle_between(wanted.as_dvec3());
+            assert!(between.to_degrees() < 0.005, "{x} {y}: {between}");
+            assert!(ray.origin.distance(eye) < 0.03, "{:?}", ray.origin);
         }
     }
 
