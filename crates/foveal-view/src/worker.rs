@@ -60,10 +60,16 @@ impl Request {
         self.has_the_sides_of(other) && (self.time_s, &self.clip) == (other.time_s, &other.clip)
     }
 
-    /// Whether both ask for the same two sides from the same place, at whatever moment.
+    /// Whether both ask for the same two sides from the same place, at whatever moment. Where
+    /// culling is frozen, one side draws what it found elsewhere, and finds nothing.
     pub(crate) fn has_the_sides_of(&self, other: &Self) -> bool {
-        (&self.settings, &self.reference, &self.camera)
-            == (&other.settings, &other.reference, &other.camera)
+        (&self.settings, &self.reference, &self.camera, self.frozen)
+            == (
+                &other.settings,
+                &other.reference,
+                &other.camera,
+                other.frozen,
+            )
     }
 }
 

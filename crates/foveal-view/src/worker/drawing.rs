@@ -161,13 +161,10 @@ impl Drawing {
             return Ok(Some(side.shown(scene, request, drawn)));
         };
         let Request { camera, time_s, .. } = request;
-        let is_same = |m: &Measuring| m.is_of(settings, &request.settings, camera);
-        if !self.measuring.as_ref().is_some_and(is_same) {
-            self.measuring = None;
-        }
+        self.measuring.take_if(|m| !m.is_of(request));
         let measuring = self
             .measuring
-            .get_or_insert_with(|| Measuring::new(settings, &request.settings, camera));
+            .get_or_insert_with(|| Measuring::new(request));
         // While settings change all the time, the picture of a reference that stays is good enough.
         let known = self.reference_drawn.as_ref().is_some_and(|drawn| {
             (&drawn.settings, &drawn.camera, &drawn.clip) == (settings, camera, &request.clip)

@@ -1,8 +1,9 @@
 //! Reference and chosen side compared while they are drawn in turn.
 
-use foveal::{FrameStats, Settings};
+use foveal::FrameStats;
 use foveal_measure::{Comparison, FrameTimes, Turns};
-use foveal_scene::Camera;
+
+use super::Request;
 
 /// What the pairs of frames say so far.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,24 +21,20 @@ pub(crate) struct Compared {
 /// Pairs of one view with one reference and one choice. The moment of an animated scene may change:
 /// both sides draw it.
 pub(super) struct Measuring {
-    reference: Settings,
-    chosen: Settings,
-    camera: Camera,
+    request: Request,
     turns: Turns,
 }
 
 impl Measuring {
-    pub(super) fn new(reference: &Settings, chosen: &Settings, camera: &Camera) -> Self {
+    pub(super) fn new(request: &Request) -> Self {
         Self {
-            reference: reference.clone(),
-            chosen: chosen.clone(),
-            camera: camera.clone(),
+            request: request.clone(),
             turns: Turns::default(),
         }
     }
 
-    pub(super) fn is_of(&self, reference: &Settings, chosen: &Settings, camera: &Camera) -> bool {
-        self.reference == *reference && self.chosen == *chosen && self.camera == *camera
+    pub(super) fn is_of(&self, request: &Request) -> bool {
+        self.request.has_the_sides_of(request)
     }
 
     /// Whether the reference is drawn first in the next pair.

@@ -106,6 +106,24 @@ fn failure(worker: &Worker) -> String {
 }
 
 #[test]
+fn pairs_with_frozen_culling_are_not_those_without() {
+    let (before, frozen) = (
+        request(),
+        Request {
+            frozen: true,
+            ..request()
+        },
+    );
+    let later = Request {
+        time_s: 1.0,
+        ..request()
+    };
+    let measuring = super::measuring::Measuring::new(&before);
+    assert!(measuring.is_of(&later) && !measuring.is_of(&frozen));
+    assert!(!frozen.shows_the_same(&before));
+}
+
+#[test]
 fn errors_are_news_and_work_goes_on() {
     let worker = worker();
     worker.load("cornell".to_owned());
