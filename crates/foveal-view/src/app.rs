@@ -392,8 +392,12 @@ impl App {
             return;
         };
         if self.asked.as_ref() != Some(&request) {
-            let before = self.asked.as_ref().map(|asked| &asked.settings);
-            if before.is_some_and(|settings| *settings != request.settings) {
+            let costs_otherwise = |asked: &Request| {
+                // The graph goes on while the eye wanders.
+                let gaze = asked.settings.eye.gaze;
+                request.settings.clone().with(|s| s.eye.gaze = gaze) != asked.settings
+            };
+            if self.asked.as_ref().is_some_and(costs_otherwise) {
                 self.history.clear();
             }
             let is_same = |quality: &Quality| quality.request.shows_the_same(&request);

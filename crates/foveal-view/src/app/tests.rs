@@ -469,3 +469,29 @@ fn a_file_s_name_counts_once_it_is_typed() {
     assert_ne!(named(&app), "sky.hdr");
     assert!(named(&app).contains("23"));
 }
+
+#[test]
+fn a_gaze_that_wanders_leaves_the_graph_and_without_effect_asks_for_nothing() {
+    let mut app = loaded();
+    let context = egui::Context::default();
+    let pass = Pass::new(&context, SIZES[0]);
+    app.load_textures(&context);
+    app.opening = None;
+    app.display.gaze_follows = true;
+    pass.show(&mut app, Vec::new());
+    let wander = |app: &mut App, shading: &str| {
+        app.draft.insert("shading".to_owned(), shading.into());
+        pass.show(app, Vec::new());
+        app.worker.ordered();
+        app.history.push(1.0);
+        let middle = Pos2::ZERO + SIZES[0] * 0.5;
+        for place in [middle, middle + Vec2::splat(20.0)] {
+            pass.show(app, vec![Event::PointerMoved(place)]);
+            pass.show(app, Vec::new());
+        }
+        (app.worker.ordered().len(), app.history.frames().len())
+    };
+    assert_eq!(wander(&mut app, "full"), (0, 1));
+    let (orders, frames) = wander(&mut app, "coarse");
+    assert!(orders > 0 && frames == 1, "{orders}, {frames}");
+}
