@@ -228,5 +228,9 @@ pub struct FrameStats {
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub stereo: Option<StereoStats>,
     /// From the start of the frame's CPU work until the GPU finished it, in milliseconds.
+    /// [`Renderer::render_to`](crate::Renderer::render_to) does not wait for that: it ends when
+    /// wgpu tells of it, outside browsers when something is submitted or polled next. Where that is
+    /// the next frame, it is no less than the time between frames; `cpu_ms` and `gpu_ms` are the
+    /// work.
     pub frame_ms: f64,
 }

@@ -28,11 +28,11 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     });
     ui.add_space(6.0);
     card(ui, "Work", |ui| {
-        let pixels = u64::from(stats.width) * u64::from(stats.height);
         figure(ui, "Picture", format!("{} x {}", stats.width, stats.height));
         figure(ui, "Draws", grouped(stats.draws));
         figure(ui, "Triangles", grouped(stats.triangles));
         figure(ui, "Shaded samples", grouped(stats.shaded_samples));
+        let pixels = shown.request.settings.drawn_pixels();
         let fraction = 100.0 * stats.shaded_samples as f64 / pixels.max(1) as f64;
         figure(ui, "Per pixel", format!("{fraction:.2} %"));
         if stats.edge_fraction > 0.0 {

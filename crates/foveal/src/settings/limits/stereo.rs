@@ -124,6 +124,17 @@ mod tests {
     }
 
     #[test]
+    fn drawn_pixels_are_those_of_all_eyes_before_they_are_stretched() {
+        let mut settings = Settings::default().with(|s| {
+            (s.picture.width, s.picture.height) = (320, 180);
+            s.picture.render_scale = 0.5;
+        });
+        assert_eq!(settings.drawn_pixels(), 160 * 90);
+        settings.stereo.mode = Stereo::Instanced;
+        assert_eq!(settings.drawn_pixels(), 2 * 160 * 90);
+    }
+
+    #[test]
     fn impossible_eyes_and_lenses_are_refused_by_name() {
         let stereo = Settings::default().with(|s| s.stereo.mode = Stereo::Instanced);
         assert_eq!(message(&stereo), "");
