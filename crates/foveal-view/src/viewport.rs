@@ -43,14 +43,15 @@ pub(crate) fn show(app: &mut App, ui: &mut egui::Ui) {
         );
         let rect = picture(app, ui, place);
         let over_split = rect.is_some_and(|rect| split(app, ui, rect));
-        if let Some(rect) = rect {
-            if app.display.gaze_follows && app.missing("gaze").is_none() {
-                if let Some(at) = response.hover_pos() {
-                    let place = (at - rect.min) / rect.size();
-                    app.look_at(glam::Vec2::new(place.x, place.y));
-                }
-                gaze(app, ui, rect);
+        if let Some(rect) = rect
+            && app.display.gaze_follows
+            && app.missing("gaze").is_none()
+        {
+            if let Some(at) = response.hover_pos() {
+                let place = (at - rect.min) / rect.size();
+                app.look_at(glam::Vec2::new(place.x, place.y));
             }
+            gaze(app, ui, rect);
         }
         let mut hands = Hands::default();
         if !over_split {
