@@ -13,7 +13,7 @@ use foveal_host::failure::usage;
 use foveal_host::import_args::ImportArgs;
 use foveal_host::rate_image::rate_image;
 use foveal_host::settings::{SettingsArgs, flags, read as read_settings};
-use foveal_host::{command_line, gpu, scene_source, values};
+use foveal_host::{atomic_file, command_line, gpu, scene_source, values};
 
 /// Arguments of `foveal view`.
 #[derive(Debug, clap::Args)]
@@ -118,6 +118,7 @@ fn host(args: &Args) -> anyhow::Result<Host> {
         record: Box::new(recordings::start),
         no_video: recordings::no_video(),
         read_settings,
+        write_file: atomic_file::write,
         rate_image,
         environment,
         flags,

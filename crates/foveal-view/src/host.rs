@@ -129,6 +129,8 @@ pub struct Host {
     pub no_video: Option<String>,
     /// Reads a settings file, and whether it says how large the picture is.
     pub read_settings: fn(&Path) -> anyhow::Result<(Settings, bool)>,
+    /// Writes a file whole or not at all.
+    pub write_file: fn(&Path, &[u8]) -> anyhow::Result<()>,
     /// The picture that the settings name as the source of their rate map.
     pub rate_image: fn(&Settings) -> anyhow::Result<Option<RateImage>>,
     /// The environment that the settings name the file of.

@@ -1,6 +1,9 @@
 //! Screenshots, settings files, and the command that draws the same.
 
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
+
+use toml::Table;
 
 use super::App;
 use crate::command;
@@ -13,27 +16,38 @@ impl App {
         let free = (1..).map(|n| PathBuf::from(format!("foveal-{n:03}.png")));
         let path = free.into_iter().find(|path| !path.exists());
         let path = path.unwrap_or_else(|| PathBuf::from("foveal.png"));
-        let Rgba {
-            width,
-            height,
-            bytes,
-        } = &shown.picture;
-        match image::save_buffer(&path, bytes, *width, *height, image::ColorType::Rgba8) {
-            Ok(()) => self.say(context, format!("Screenshot: {}", path.display())),
-            Err(error) => {
-                self.complain(format!("cannot write '{}': {error}", path.display()));
-            }
-        }
+        let written = png(&shown.picture).and_then(|png| (self.host.write_file)(&path, &png));
+        self.tell_of(context, "Screenshot", &path, written);
     }
 
     pub(crate) fn save_settings(&mut self, context: &egui::Context) {
         let path = PathBuf::from(&self.settings_file);
-        let written = toml::to_string(&self.settings)
-            .map_err(anyhow::Error::from)
-            .and_then(|text| Ok(std::fs::write(&path, text)?));
+        let written = self
+            .settings_text()
+            .and_then(|text| (self.host.write_file)(&path, text.as_bytes()));
+        self.tell_of(context, "Settings saved", &path, written);
+    }
+
+    /// The settings as a file has them; without a size where that is the window's.
+    fn settings_text(&self) -> anyhow::Result<String> {
+        let mut table = Table::try_from(&self.settings)?;
+        if self.display.fit {
+            table.remove("width");
+            table.remove("height");
+        }
+        Ok(toml::to_string(&table)?)
+    }
+
+    fn tell_of(
+        &mut self,
+        context: &egui::Context,
+        what: &str,
+        path: &Path,
+        written: anyhow::Result<()>,
+    ) {
         match written {
-            Ok(()) => self.say(context, format!("Settings saved: {}", path.display())),
-            Err(error) => self.complain(format!("cannot write '{}': {error}", path.display())),
+            Ok(()) => self.say(context, format!("{what}: {}", path.display())),
+            Err(error) => self.complain(format!("{error:#}")),
         }
     }
 
@@ -63,5 +77,78 @@ impl App {
         );
         let quoted: Vec<String> = words.iter().map(|word| (self.host.quoted)(word)).collect();
         Some(quoted.join(" "))
+    }
+}
+
+fn png(picture: &Rgba) -> anyhow::Result<Vec<u8>> {
+    let Rgba {
+        width,
+        height,
+        bytes,
+    } = picture;
+    let mut png = Cursor::new(Vec::new());
+    let (color, format) = (image::ColorType::Rgba8, image::ImageFormat::Png);
+    image::write_buffer_with_format(&mut png, bytes, *width, *height, color, format)?;
+    Ok(png.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::{Arc, Mutex};
+
+    use anyhow::bail;
+
+    use super::*;
+    use crate::app::tests::{app, loaded};
+
+    /// What was written last.
+    static SAVED: Mutex<Vec<u8>> = Mutex::new(Vec::new());
+
+    #[test]
+    fn a_size_is_saved_only_where_it_is_not_the_windows() {
+        let mut app = app();
+        Arc::get_mut(&mut app.host).unwrap().write_file = |_, bytes| {
+            *SAVED.lock().unwrap() = bytes.to_vec();
+            Ok(())
+        };
+        for fit in [true, false] {
+            app.display.fit = fit;
+            app.save_settings(&egui::Context::default());
+            let saved = String::from_utf8(std::mem::take(&mut *SAVED.lock().unwrap())).unwrap();
+            let table: Table = saved.parse().unwrap();
+            for key in ["width", "height"] {
+                assert_eq!(table.contains_key(key), !fit, "{key}: {saved}");
+            }
+            let settings: foveal::Settings = table.try_into().unwrap();
+            assert_eq!(settings, app.settings);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_told() {
+        let mut app = loaded();
+        Arc::get_mut(&mut app.host).unwrap().write_file =
+            |path, _| bail!("cannot write '{}': the disk is full", path.display());
+        let context = egui::Context::default();
+        for save in [App::save_settings, App::take_screenshot] {
+            app.messages.clear();
+            save(&mut app, &context);
+            let message = &app.messages[0];
+            assert!(
+                message.is_error && message.text.contains("full"),
+                "{message:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_screenshot_is_a_png_of_the_picture() {
+        let picture = Rgba {
+            width: 2,
+            height: 1,
+            bytes: vec![1, 2, 3, 255, 4, 5, 6, 255],
+        };
+        let read = image::load_from_memory(&png(&picture).unwrap()).unwrap();
+        assert_eq!(read.to_rgba8().into_raw(), picture.bytes);
     }
 }

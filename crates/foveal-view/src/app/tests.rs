@@ -27,6 +27,7 @@ pub(crate) fn host() -> Host {
         record: Box::new(|_, _, _| bail!("no recordings here")),
         no_video: Some("there is no ffmpeg".to_owned()),
         read_settings: |_| bail!("no settings here"),
+        write_file: |_, _| bail!("no files here"),
         rate_image: |_| Ok(None),
         environment: |_| Ok(None),
         flags: |_| Vec::new(),
