@@ -51,9 +51,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
 }
 
 fn host(args: &Args) -> anyhow::Result<Host> {
-    if args.scene == "-" {
-        return usage("a window does not read its scene from standard input; name a file");
-    }
+    refuse_stdin(&args.scene)?;
     let (settings, is_sized) = args.settings.resolve_sized()?;
     gpu::check(args.adapter.as_deref())?;
     let (first, camera) = (args.scene.clone(), args.camera.clone());
@@ -78,6 +76,7 @@ fn host(args: &Args) -> anyhow::Result<Host> {
         flags
     };
     let load = move |name: &str| {
+        refuse_stdin(name)?;
         // What was asked for by name holds for the first scene; limits hold for all.
         let mut options = options.clone();
         if name != first {
@@ -127,6 +126,14 @@ fn host(args: &Args) -> anyhow::Result<Host> {
         quoted: command_line::quoted,
         scene_flags: Box::new(scene_flags),
     })
+}
+
+/// Standard input may never end, and the window would wait for it.
+fn refuse_stdin(scene: &str) -> anyhow::Result<()> {
+    if scene == scene_source::STDIN {
+        return usage("a window does not read its scene from standard input; name a file");
+    }
+    Ok(())
 }
 
 /// Flags without `--clip`: the window says which one plays.

@@ -16,7 +16,7 @@ use crate::import_args::{self, NoSuchScene};
 pub const DEFAULT_SCENE: &str = "demo";
 
 /// The name of standard input.
-const STDIN: &str = "-";
+pub const STDIN: &str = "-";
 
 /// A camera for every moment, in seconds.
 pub type TimedCamera = Box<dyn Fn(f32) -> Camera>;

@@ -124,6 +124,21 @@ fn write_animated(folder: &Path) -> String {
 }
 
 #[test]
+fn no_scene_of_a_window_is_read_from_standard_input() {
+    let args = |words: &[&str]| match Cli::try_parse_from(words).unwrap().command {
+        Command::View(args) => args,
+        _ => panic!("these are words for the window"),
+    };
+    let refused = |result: anyhow::Result<()>| {
+        let text = result.unwrap_err().to_string();
+        assert!(text.contains("standard input; name a file"), "{text}");
+    };
+    refused(super::host(&args(&["foveal", "view", "-"])).map(drop));
+    let host = super::host(&args(&["foveal", "view", "cornell"])).unwrap();
+    refused((host.load)("-").map(drop));
+}
+
+#[test]
 fn flags_of_one_scene_are_not_those_of_another_and_the_clip_is_the_windows() {
     let words = [
         "foveal",
