@@ -11,7 +11,6 @@ use super::define::settings;
 use super::eye::*;
 use super::stereo::*;
 use super::variable::*;
-use crate::stereo::EyeLayout;
 
 settings! {
     /// Size and curve of the picture, and what it shows.
@@ -338,13 +337,5 @@ impl Settings {
             }
             s.picture.render_scale = 1.0;
         })
-    }
-
-    /// Pixels of all eyes' pictures at the size at which they are drawn:
-    /// [`FrameStats::shaded_samples`](crate::FrameStats::shaded_samples) where each takes one
-    /// sample.
-    #[must_use]
-    pub fn drawn_pixels(&self) -> u64 {
-        EyeLayout::of(&self.drawn()).pixels()
     }
 }

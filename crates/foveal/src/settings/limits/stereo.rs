@@ -15,6 +15,14 @@ impl Settings {
         self.stereo.mode != Stereo::Off
     }
 
+    /// Pixels of all eyes' pictures at the size at which they are drawn:
+    /// [`FrameStats::shaded_samples`](crate::FrameStats::shaded_samples) where each takes one
+    /// sample.
+    #[must_use]
+    pub fn drawn_pixels(&self) -> u64 {
+        EyeLayout::of(&self.drawn()).pixels()
+    }
+
     /// Whether both eyes have the same position, frustum and gaze, so that one picture serves both.
     pub(crate) fn is_seen_alike(&self) -> bool {
         let same = match self.stereo.frusta {
