@@ -2,8 +2,8 @@
 
 /// The classification of one box.
 ///
-/// Results are conservative: [`Visible`](Self::Visible) means "may be seen", and every other value
-/// means that no sample of the picture shows the box. The enum is exhaustive on purpose: a renderer
+/// Results are conservative: [`Visible`](Self::Visible) means "may be seen", and every other value but
+/// [`Small`](Self::Small) means that no sample of the picture shows the box. The enum is exhaustive on purpose: a renderer
 /// decides about every class, and a new class is a new major version.
 /// [`is_visible`](Self::is_visible) is all that drawing needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,7 +15,7 @@ pub enum Visibility {
     /// The box is outside the view frustum: beside it, beyond the far plane, or nearer than the
     /// near plane.
     Outside = 1,
-    /// The box is below the size threshold of [`FrameOptions`](crate::FrameOptions).
+    /// The box is below the size threshold of [`FrameOptions`](crate::FrameOptions), seen or not.
     Small = 2,
     /// The box is hidden behind occluders.
     Occluded = 3,

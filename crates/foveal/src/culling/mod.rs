@@ -3,7 +3,7 @@
 //! The occlusion buffer has by default a quarter of the picture's size per axis, and its frustum is
 //! the picture's, widened to whole buffer pixels: the 4x4 coverage samples in each of its pixels
 //! then lie on the picture's own pixel centres, so that what is culled could not have changed a
-//! single pixel. Where the picture shows what lies between the centres too (anti-aliasing), and where
+//! single pixel, but through cracks that rounding opens between surfaces that meet. Where the picture shows what lies between the centres too (anti-aliasing), and where
 //! the buffer has another size, views ask for every point of the picture.
 
 mod cells;

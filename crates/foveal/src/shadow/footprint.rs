@@ -5,6 +5,10 @@ use glam::{Vec2, Vec3};
 
 use super::volume::{BORDER, Volume, widening};
 
+/// As `shadow_offset` in `shadow/lookup.wgsl`: places are moved by up to so many texels, times the
+/// bias.
+pub(super) const MOST_MOVED: f32 = 1.4;
+
 /// Part of a tile that a box covers, as seen from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Footprint {

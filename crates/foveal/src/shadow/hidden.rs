@@ -1,5 +1,6 @@
 //! Casters that others hide from the light: `foveal-cull` with the tile's own texel centres as its
-//! samples, so that what is left out could not have changed a texel.
+//! samples, so that what is left out could not have changed a texel, but through cracks that rounding
+//! opens between surfaces that meet.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;

@@ -6,8 +6,7 @@
 
 use foveal_scene::Aabb;
 
-use super::footprint::{Footprint, texel_at};
-use super::records::MOST_MOVED;
+use super::footprint::{Footprint, MOST_MOVED, texel_at};
 use super::volume::Volume;
 
 /// Most parts of a tile along each side, and texels that a part has at least.

@@ -5,6 +5,7 @@
 //! first cascade's row, and then the end of its rays and one by their length. After all lights a
 //! row per cascade: centre across and up, and half the width.
 
+use super::footprint::MOST_MOVED;
 use super::kept::KeptTiles;
 use super::plan::{CASCADES, Plan, TILES_PER_LIGHT, near_of, spot_tangent};
 use super::volume::Volume;
@@ -66,9 +67,6 @@ impl LookupSettings {
 
 /// Texels that filters of one width reach, with what is blended.
 const SOFT_REACH: f32 = 3.0;
-/// As `shadow_offset` in `shadow/lookup.wgsl`: places are moved by up to so many texels, times the
-/// bias.
-pub(super) const MOST_MOVED: f32 = 1.4;
 /// As in `shadow/contact.wgsl`.
 pub(super) const CONTACT_REACH: f32 = 12.0;
 
