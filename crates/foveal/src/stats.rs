@@ -159,6 +159,8 @@ pub struct ShadowStats {
     pub casters_hidden: u64,
     /// Those of them whose shadows fall on nothing that is seen.
     pub casters_unneeded: u64,
+    /// Those of them that are beside what has moved: the tile keeps what it holds of them.
+    pub casters_beside: u64,
     /// Triangles of these.
     pub triangles: u64,
     /// Texels of the tiles that the frame may look into.

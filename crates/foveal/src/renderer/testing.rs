@@ -116,6 +116,10 @@ impl Renderer {
         &self.stages.shadows
     }
 
+    pub(crate) fn shadows_mut(&mut self) -> &mut crate::shadow::ShadowStage {
+        &mut self.stages.shadows
+    }
+
     /// What shaders are told of a frame.
     pub(crate) fn frame_uniform(&self, camera: &Camera) -> FrameUniform {
         let settings = &self.stages.settings;

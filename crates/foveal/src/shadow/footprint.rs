@@ -12,7 +12,8 @@ pub(super) const MOST_MOVED: f32 = 1.4;
 /// Part of a tile that a box covers, as seen from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Footprint {
-    /// Least and greatest coordinates in texels from the tile's corner; may lie beyond the tile.
+    /// Least and greatest coordinates in texels from the tile's lower left corner, up as y is; may lie
+    /// beyond the tile.
     pub(super) low: Vec2,
     pub(super) high: Vec2,
     /// Distances along the tile's axis, metres.

@@ -6,8 +6,9 @@ use std::collections::BTreeMap;
 use foveal_scene::Aabb;
 
 use super::atlas::{Atlas, Tile};
-use super::footprint::texel_at;
+use super::footprint::{Footprint, texel_at};
 use super::mask::Mask;
+use super::patch::Patch;
 use super::plan::Wanted;
 use super::volume::Volume;
 
@@ -18,6 +19,8 @@ pub(super) struct Kept {
     pub(super) volume: Volume,
     /// It holds the shadows of the pose, but for those of what is left out.
     pub(super) is_drawn: bool,
+    /// While it does not: the patch beside which it does; `None` where all of it is wrong.
+    pub(super) wrong: Option<Patch>,
     /// What it was drawn for last.
     held: Option<Volume>,
     /// Casters that it was drawn without, as nobody has seen their shadows yet: instances, ascending.
@@ -35,12 +38,22 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// What it holds is wrong from the frame after this one on.
-    fn disturb(&mut self, frame: u64) {
+    /// What it holds is wrong from the frame after this one on, all of it or in a patch.
+    fn disturb(&mut self, frame: u64, patch: Option<Patch>) {
         self.is_drawn = false;
+        self.wrong = patch;
         self.is_restless = self.disturbed_in.is_some_and(|before| before + 1 >= frame);
         self.light_moves = false;
         self.disturbed_in = Some(frame);
+    }
+
+    /// The texels that a box may cover; `None` where there are none.
+    pub(super) fn patch_of(&self, b: &Aabb) -> Option<Patch> {
+        let side = self.tile.side();
+        if !self.volume.meets(b, side as f32) {
+            return None;
+        }
+        Patch::of(Footprint::new(&self.volume, b, side as f32)?, side)
     }
 }
 
@@ -147,6 +160,7 @@ impl KeptTiles {
     pub(super) fn drawn(&mut self, want: &Wanted, left_out: Vec<u32>) -> bool {
         if let Some(kept) = self.tiles.get_mut(&key(want)) {
             kept.is_drawn = true;
+            kept.wrong = None;
             kept.held = Some(kept.volume);
             kept.left_out = left_out;
         }
@@ -235,16 +249,43 @@ impl KeptTiles {
         for kept in self.tiles.values_mut().filter(|k| !k.left_out.is_empty()) {
             kept.left_out.clear();
             kept.is_drawn = false;
+            kept.wrong = None;
         }
     }
 
-    /// Tiles that see any of these boxes must be drawn again, for what they were drawn for at least.
+    /// Tiles that see any of these boxes must be drawn again where they see them, for what they
+    /// were drawn for at least.
     pub(super) fn disturb(&mut self, boxes: &[Aabb]) {
-        for kept in self.tiles.values_mut().filter(|kept| kept.is_drawn) {
-            let side = kept.tile.side() as f32;
-            if boxes.iter().any(|b| kept.volume.meets(b, side)) {
-                kept.disturb(self.frame);
+        for kept in self.tiles.values_mut() {
+            if !kept.is_drawn && kept.wrong.is_none() {
+                continue;
             }
+            let mut wrong: Option<Patch> = None;
+            for patch in boxes.iter().filter_map(|b| kept.patch_of(b)) {
+                let all = wrong.map_or(patch, |wrong| wrong.union(patch));
+                wrong = Some(all);
+                if all.is_most_of(kept.tile.side()) {
+                    break;
+                }
+            }
+            let Some(wrong) = wrong else {
+                continue;
+            };
+            let wrong = Some(wrong).filter(|wrong| !wrong.is_most_of(kept.tile.side()));
+            if kept.is_drawn {
+                kept.disturb(self.frame, wrong);
+            } else {
+                kept.wrong = kept.wrong.zip(wrong).map(|(a, b)| a.union(b));
+            }
+        }
+    }
+
+    /// All of every tile is wrong.
+    #[cfg(test)]
+    pub(super) fn spoil(&mut self) {
+        for kept in self.tiles.values_mut() {
+            kept.is_drawn = false;
+            kept.wrong = None;
         }
     }
 
@@ -269,7 +310,7 @@ impl KeptTiles {
                     if kept.volume != want.volume {
                         kept.volume = want.volume;
                         kept.received = None;
-                        kept.disturb(self.frame - 1);
+                        kept.disturb(self.frame - 1, None);
                         kept.light_moves = kept.is_restless;
                     }
                 }
@@ -337,6 +378,7 @@ impl KeptTiles {
             tile,
             volume: want.volume,
             is_drawn: false,
+            wrong: None,
             held: None,
             left_out: Vec::new(),
             received: None,

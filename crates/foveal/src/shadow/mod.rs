@@ -25,6 +25,9 @@ mod mask;
 mod near;
 mod part;
 mod pass;
+mod patch;
+#[cfg(test)]
+mod patch_tests;
 mod plan;
 #[cfg(test)]
 mod rays;

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::atlas::Tile;
+use super::patch::Patch;
 use crate::geometry::{
     DrawList, Faces, PipelineKey, PipelineRecipe, Pipelines, Shape, VertexSource,
 };
@@ -20,9 +21,11 @@ const HAS_UV_MAP: u32 = 128;
 #[derive(Clone, Debug)]
 pub(super) struct TileDraw {
     pub(super) tile: Tile,
+    /// What of it is drawn; `None` for all of it.
+    pub(super) patch: Option<Patch>,
     pub(super) clip_from_world: glam::Mat4,
     pub(super) casters: DrawList,
-    /// Whether it holds nothing yet; otherwise these casters are added to those that it holds.
+    /// Whether nothing is there yet; otherwise these casters are added to those that it holds.
     pub(super) is_new: bool,
 }
 
@@ -151,7 +154,9 @@ impl CasterPass {
             let Tile { x, y, .. } = draw.tile;
             let side = draw.tile.side();
             pass.set_viewport(x as f32, y as f32, side as f32, side as f32, 0.0, 1.0);
-            pass.set_scissor_rect(x, y, side, side);
+            let Patch { low, high } = draw.patch.unwrap_or(Patch::whole(side));
+            let [width, height] = [0, 1].map(|i| high[i] - low[i]);
+            pass.set_scissor_rect(x + low[0], y + low[1], width, height);
             if draw.is_new {
                 pass.set_pipeline(&self.clear);
                 pass.draw(0..3, 0..1);

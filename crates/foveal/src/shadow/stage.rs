@@ -61,6 +61,7 @@ struct Counts {
     in_reach: u64,
     hidden: u64,
     unneeded: u64,
+    beside: u64,
     triangles: u64,
     waiting: u64,
     longest_wait: u64,
@@ -245,6 +246,23 @@ impl ShadowStage {
         &self.atlas
     }
 
+    /// The tiles that the last frame looked into.
+    #[cfg(test)]
+    pub(super) fn tiles(&self) -> Vec<Tile> {
+        let drawing = self.drawing.as_ref().unwrap();
+        let wanted = drawing.plan.wanted.iter();
+        let shown = wanted.filter_map(|want| drawing.kept.shown(want));
+        shown.map(|(tile, _)| tile).collect()
+    }
+
+    /// The next frame draws every tile, in its place.
+    #[cfg(test)]
+    pub(super) fn draw_again(&mut self) {
+        let drawing = self.drawing.as_mut().unwrap();
+        drawing.settled = None;
+        drawing.kept.spoil();
+    }
+
     /// What shaders were told.
     #[cfg(test)]
     pub(crate) fn rows(&self) -> &[Row] {
@@ -357,6 +375,7 @@ impl Drawing {
                     self.counts.triangles += casters.triangles;
                     self.draws.push(TileDraw {
                         tile: kept.tile,
+                        patch: None,
                         clip_from_world: volume.clip_from_world(side),
                         casters,
                         is_new: false,
@@ -374,19 +393,28 @@ impl Drawing {
         };
         let (tile, volume) = (kept.tile, &want.volume);
         let side = tile.side() as f32;
-        let casters = light.casters(scene);
         let is_cast = |i: &u32| volume.resolves(bounds(*i), side) && volume.meets(bounds(*i), side);
-        let mut casters: Vec<u32> = casters.iter().copied().filter(is_cast).collect();
+        let casters = light.casters(scene).iter().copied().filter(is_cast);
+        let mut casters: Vec<u32> = casters.collect();
         self.counts.in_reach += casters.len() as u64;
-        let mut left_out = Vec::new();
+        let (mut left_out, mut late) = (Vec::new(), Vec::new());
+        let patch = kept.wrong;
+        if let Some(patch) = patch {
+            // What the tile was drawn without is so still, or else is drawn in all of it.
+            left_out = std::mem::take(&mut kept.left_out);
+            left_out.retain(|i| casters.binary_search(i).is_ok());
+            let all = casters.len();
+            casters.retain(|&i| kept.patch_of(bounds(i)).is_some_and(|p| p.meets(patch)));
+            self.counts.beside += (all - casters.len()) as u64;
+        }
         // A light that moves asks anew of all that is seen, for one frame: that takes longer than
         // drawing what it would leave out.
         if let Near::Cells(near) = &light.near
             && !kept.light_moves
         {
             let all = casters.len();
-            // What changes in each frame is drawn sooner than it is searched.
-            if !kept.is_restless {
+            // What changes in each frame is drawn sooner than it is searched, and so is a patch.
+            if !kept.is_restless && patch.is_none() {
                 self.hidden
                     .take_out(scene, volume, tile.side(), &mut casters);
             }
@@ -396,23 +424,36 @@ impl Drawing {
             let mut received =
                 received.unwrap_or_else(|| Box::new(Received::new(side, self.frame)));
             near.add_to(&mut received, volume, side);
-            (casters, left_out) = casters
-                .iter()
-                .partition(|&&i| received.mask.shows(volume, bounds(i)));
-            self.counts.unneeded += left_out.len() as u64;
+            let is_shown = |i: &u32| received.mask.shows(volume, bounds(*i));
+            (late, left_out) = left_out.into_iter().partition(is_shown);
+            casters.retain(|i| late.binary_search(i).is_err());
+            let unneeded;
+            (casters, unneeded) = casters.into_iter().partition(is_shown);
+            self.counts.unneeded += unneeded.len() as u64;
+            left_out.extend(unneeded);
+            left_out.sort_unstable();
+            left_out.dedup();
             if kept.is_restless || !left_out.is_empty() {
                 kept.received = Some(received);
             }
         }
-        let casters = DrawList::of_casters(scene, casters.into_iter(), CasterPass::key);
-        let triangles = casters.triangles;
+        let clip_from_world = volume.clip_from_world(side);
+        let mut triangles = 0;
+        for (instances, is_new) in [(casters, true), (late, false)] {
+            if instances.is_empty() && !is_new {
+                continue;
+            }
+            let casters = DrawList::of_casters(scene, instances.into_iter(), CasterPass::key);
+            triangles += casters.triangles;
+            self.draws.push(TileDraw {
+                tile,
+                patch: patch.filter(|_| is_new),
+                clip_from_world,
+                casters,
+                is_new,
+            });
+        }
         self.counts.triangles += triangles;
-        self.draws.push(TileDraw {
-            tile,
-            clip_from_world: volume.clip_from_world(side),
-            casters,
-            is_new: true,
-        });
         if self.kept.drawn(want, left_out) {
             self.changed.push(volume.sphere());
         }
@@ -431,6 +472,7 @@ impl Drawing {
             casters_in_reach: self.counts.in_reach,
             casters_hidden: self.counts.hidden,
             casters_unneeded: self.counts.unneeded,
+            casters_beside: self.counts.beside,
             triangles: self.counts.triangles,
             texels: in_use.iter().map(|t| u64::from(t.side()).pow(2)).sum(),
             tiles_waiting: self.counts.waiting,

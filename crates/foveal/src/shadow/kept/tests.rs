@@ -234,13 +234,13 @@ fn a_tile_that_waits_shows_what_it_held_or_what_another_size_holds() {
     let of_large = Some((kept.get(&large).unwrap().tile, large.volume));
     assert_eq!(kept.shown(&large), of_large);
     // Something has moved: another size that holds it is shown sooner than what it held itself.
-    kept.get_mut(&large).unwrap().disturb(2);
+    kept.get_mut(&large).unwrap().disturb(2, None);
     kept.place(&[large], true);
     assert_eq!(kept.urgency(&large), Urgency::Waits(0));
     kept.wait(&large);
     let of_small = Some((kept.get(&small).unwrap().tile, small.volume));
     assert_eq!(kept.shown(&large), of_small);
-    kept.get_mut(&small).unwrap().disturb(2);
+    kept.get_mut(&small).unwrap().disturb(2, None);
     assert_eq!(kept.shown(&large), of_large);
     // Frames that do not see it end its wait.
     kept.place(&[large], true);
