@@ -9,6 +9,10 @@ use super::volume::{BORDER, Volume, widening};
 /// bias.
 pub(super) const MOST_MOVED: f32 = 1.4;
 
+/// A vertex is drawn beside its place by up to this part of the greatest coordinates that it is found
+/// from: far from the origin that is more than a texel.
+const ROUNDING: f32 = 1.0 / (1 << 21) as f32;
+
 /// Part of a tile that a box covers, as seen from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Footprint {
@@ -41,6 +45,16 @@ impl Footprint {
     /// What a tile of `side` texels sees of a box; `None` where it is nearer than all that casts a
     /// shadow.
     pub(super) fn new(volume: &Volume, b: &Aabb, side: f32) -> Option<Self> {
+        let exact = Self::without_rounding(volume, b, side)?;
+        let origin = match *volume {
+            Volume::Pyramid { apex, .. } => apex,
+            Volume::Column { .. } => Vec3::ZERO,
+        };
+        let greatest = (b.min.abs().max(b.max.abs()).max(origin.abs())).max_element();
+        Some(exact.grown(ROUNDING * greatest / texel_at(volume, side, exact.nearest)))
+    }
+
+    fn without_rounding(volume: &Volume, b: &Aabb, side: f32) -> Option<Self> {
         let corner = |i: usize| {
             let pick = |bit: usize, low: f32, high: f32| if i >> bit & 1 == 0 { low } else { high };
             Vec3::new(
@@ -138,5 +152,65 @@ pub(super) fn texel_at(volume: &Volume, side: f32, distance: f32) -> f32 {
     match *volume {
         Volume::Pyramid { tangent, .. } => 2.0 * tangent * distance / (side - 2.0 * BORDER),
         Volume::Column { radius, .. } => 2.0 * radius / side,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shadow::volume::{axes_along, cube_axes};
+
+    /// Places of boxes as the device draws them, from the origin to ten kilometres away.
+    #[test]
+    fn a_footprint_holds_what_is_drawn_however_far_the_origin_is() {
+        let mut state = 5_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / (1 << 24) as f32
+        };
+        let side = 512.0;
+        let mut compared = 0;
+        for away in [0.0, 300.0, 1e3, 1e4] {
+            for tangent in [1.0, 0.087] {
+                for _ in 0..2_000 {
+                    let mut place = || Vec3::new(random(), random(), random()) - 0.5;
+                    let apex = 2.0 * away * place();
+                    let axes = axes_along(place().normalize());
+                    let lamp = Volume::Pyramid {
+                        apex,
+                        axes: if tangent == 1.0 { cube_axes(3) } else { axes },
+                        tangent,
+                        range: 8.0,
+                        near: 0.01,
+                    };
+                    let sun = Volume::Column {
+                        axes,
+                        center: [axes[0].dot(apex), axes[1].dot(apex)],
+                        radius: 8.0,
+                        span: [axes[2].dot(apex) - 50.0, axes[2].dot(apex) + 50.0],
+                    };
+                    let at = apex + place() * 4.0;
+                    let half = 0.2 * (place() + 0.5);
+                    let b = Aabb::new(at - half, at + half);
+                    let inside = b.min + b.size() * (place() + 0.5);
+                    for volume in [lamp, sun] {
+                        let clip = volume.clip_from_world(side) * inside.extend(1.0);
+                        if clip.w < 0.02 {
+                            continue;
+                        }
+                        let texel = (0.5 + 0.5 * clip.truncate().truncate() / clip.w) * side;
+                        let held = Footprint::new(&volume, &b, side).map(|f| f.grown(1.0));
+                        assert!(
+                            held.is_some_and(|f| {
+                                texel.cmpge(f.low).all() && texel.cmple(f.high).all()
+                            }),
+                            "{volume:?} {b:?} {texel} {held:?}"
+                        );
+                        compared += 1;
+                    }
+                }
+            }
+        }
+        assert!(compared > 10_000, "{compared}");
     }
 }

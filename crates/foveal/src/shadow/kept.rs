@@ -275,7 +275,8 @@ impl KeptTiles {
             if kept.is_drawn {
                 kept.disturb(self.frame, wrong);
             } else {
-                kept.wrong = kept.wrong.zip(wrong).map(|(a, b)| a.union(b));
+                let both = kept.wrong.zip(wrong).map(|(a, b)| a.union(b));
+                kept.wrong = both.filter(|both| !both.is_most_of(kept.tile.side()));
             }
         }
     }

@@ -366,7 +366,8 @@ impl Drawing {
                 if kept.left_out.is_empty() || !near.add_to(received, volume, side) {
                     continue;
                 }
-                let shown = |i: u32| received.mask.shows(volume, bounds(i));
+                let is_visible = |i: u32| scene.instances[i as usize].visible;
+                let shown = |i: u32| is_visible(i) && received.mask.shows(volume, bounds(i));
                 let (shown, still): (Vec<u32>, Vec<u32>) =
                     kept.left_out.iter().partition(|&&i| shown(i));
                 kept.left_out = still;
@@ -396,16 +397,15 @@ impl Drawing {
         let is_cast = |i: &u32| volume.resolves(bounds(*i), side) && volume.meets(bounds(*i), side);
         let casters = light.casters(scene).iter().copied().filter(is_cast);
         let mut casters: Vec<u32> = casters.collect();
-        self.counts.in_reach += casters.len() as u64;
+        let in_reach = casters.len();
+        self.counts.in_reach += in_reach as u64;
         let (mut left_out, mut late) = (Vec::new(), Vec::new());
         let patch = kept.wrong;
         if let Some(patch) = patch {
             // What the tile was drawn without is so still, or else is drawn in all of it.
             left_out = std::mem::take(&mut kept.left_out);
             left_out.retain(|i| casters.binary_search(i).is_ok());
-            let all = casters.len();
             casters.retain(|&i| kept.patch_of(bounds(i)).is_some_and(|p| p.meets(patch)));
-            self.counts.beside += (all - casters.len()) as u64;
         }
         // A light that moves asks anew of all that is seen, for one frame: that takes longer than
         // drawing what it would leave out.
@@ -429,13 +429,17 @@ impl Drawing {
             casters.retain(|i| late.binary_search(i).is_err());
             let unneeded;
             (casters, unneeded) = casters.into_iter().partition(is_shown);
-            self.counts.unneeded += unneeded.len() as u64;
             left_out.extend(unneeded);
             left_out.sort_unstable();
             left_out.dedup();
+            self.counts.unneeded += left_out.len() as u64;
             if kept.is_restless || !left_out.is_empty() {
                 kept.received = Some(received);
             }
+        }
+        if patch.is_some() {
+            let others = casters.len() + late.len() + left_out.len();
+            self.counts.beside += (in_reach - others) as u64;
         }
         let clip_from_world = volume.clip_from_world(side);
         let mut triangles = 0;
