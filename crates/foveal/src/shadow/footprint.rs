@@ -160,7 +160,7 @@ mod tests {
     use super::*;
     use crate::shadow::volume::{axes_along, cube_axes};
 
-    /// Places of boxes as the device draws them, from the origin to ten kilometres away.
+    /// Corners of boxes as the device draws them, from the origin to ten kilometres away.
     #[test]
     fn a_footprint_holds_what_is_drawn_however_far_the_origin_is() {
         let mut state = 5_u32;
@@ -192,9 +192,9 @@ mod tests {
                     let at = apex + place() * 4.0;
                     let half = 0.2 * (place() + 0.5);
                     let b = Aabb::new(at - half, at + half);
-                    let inside = b.min + b.size() * (place() + 0.5);
+                    let corner = Vec3::select(place().cmplt(Vec3::ZERO), b.min, b.max);
                     for volume in [lamp, sun] {
-                        let clip = volume.clip_from_world(side) * inside.extend(1.0);
+                        let clip = volume.clip_from_world(side) * corner.extend(1.0);
                         if clip.w < 0.02 {
                             continue;
                         }
