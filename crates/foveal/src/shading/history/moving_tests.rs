@@ -4,7 +4,7 @@ use foveal_scene::{Camera, Light, LightKind, Material, Scene};
 use glam::{Mat4, Vec3};
 
 use crate::forward::twin::quads;
-use crate::testing::{Film, f32_of_half, small, texels};
+use crate::testing::{Film, f32_of_half, shifted, small, texels};
 use crate::{RateSource, Settings, Shading};
 
 /// A board before a wall, and a lamp that it is moved past.
@@ -32,14 +32,19 @@ fn scene() -> Scene {
 /// Moves the board to a place and turns it about its middle.
 fn place(scene: &mut Scene, x: f32, turned: f32) {
     let at = Mat4::from_translation(Vec3::new(x, 0.0, 0.0)) * Mat4::from_rotation_y(turned);
+    move_board(scene, at);
+}
+
+fn move_board(scene: &mut Scene, at: Mat4) {
     scene.instances[0].world_from_object = at;
     scene.instances[0].bounds = scene.meshes[0].bounds.transformed(at);
     scene.objects[0].bounds = scene.instances[0].bounds;
 }
 
 /// Mean difference of what a moving board shows and what full shading shows of it, in parts of the
-/// latter.
-fn error(settings: &Settings, camera: &Camera, at: impl Fn(u32) -> (f32, f32)) -> f32 {
+/// latter. The camera goes by `steps` metres a frame.
+fn error(settings: &Settings, steps: f32, at: impl Fn(u32) -> (f32, f32)) -> f32 {
+    let camera = Camera::look_at(Vec3::new(0.0, 0.0, 6.0), Vec3::ZERO, Vec3::Y, 0.8);
     let full = settings.clone().with(|s| s.shading.mode = Shading::Full);
     let mut scene = scene();
     let mut films = [Film::new(&scene, settings), Film::new(&scene, &full)];
@@ -49,7 +54,7 @@ fn error(settings: &Settings, camera: &Camera, at: impl Fn(u32) -> (f32, f32)) -
         place(&mut scene, x, turned);
         let radiance = films.each_mut().map(|film| {
             pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
-            film.draw(camera);
+            film.draw(&shifted(&camera, steps * frame as f32));
             film.radiance()
         });
         let gbuffer = &films[1].renderer.targets().gbuffer;
@@ -67,7 +72,6 @@ fn error(settings: &Settings, camera: &Camera, at: impl Fn(u32) -> (f32, f32)) -
 
 #[test]
 fn what_moves_or_turns_has_the_light_of_where_it_is() {
-    let camera = Camera::look_at(Vec3::new(0.0, 0.0, 6.0), Vec3::ZERO, Vec3::Y, 0.8);
     let slides = |frame: u32| (-2.0 + 0.16 * frame as f32, 0.0_f32);
     let turns = |frame: u32| (0.4_f32, 0.06 * frame as f32);
     for level in [0, 2] {
@@ -79,12 +83,61 @@ fn what_moves_or_turns_has_the_light_of_where_it_is() {
                 s.coarse.history = history;
             })
         };
-        for (way, at) in [("slides", &slides as &dyn Fn(u32) -> _), ("turns", &turns)] {
-            let [kept, anew] = [true, false].map(|history| error(&with(history), &camera, at));
+        for (way, steps, at) in [
+            ("slides", 0.0, &slides as &dyn Fn(u32) -> _),
+            ("turns", 0.0, &turns),
+            ("slides past a camera that moves", 0.02, &slides),
+        ] {
+            let [kept, anew] = [true, false].map(|history| error(&with(history), steps, at));
             println!("MOVES level {level}, it {way}: {kept}, {anew}");
             assert!(
                 kept < 1.5 * anew + 0.02,
                 "level {level}, it {way}: {kept}, {anew}"
+            );
+        }
+    }
+}
+
+/// The shares of pixels that are shaded while a board slides and the camera goes by `steps` metres a
+/// frame, all of it `away` from the origin.
+fn shaded_shares(away: Vec3, steps: f32) -> Vec<f64> {
+    let settings = small(480, 270).with(|s| {
+        s.shading.mode = Shading::Coarse;
+        s.coarse.source = RateSource::Constant;
+        s.coarse.constant_level = 1;
+        s.coarse.history = true;
+    });
+    let there = Mat4::from_translation(away);
+    let mut scene = scene();
+    scene.lights[0].position += away;
+    let wall = &mut scene.instances[1];
+    wall.world_from_object = there * wall.world_from_object;
+    wall.bounds = scene.meshes[0].bounds.transformed(wall.world_from_object);
+    scene.objects[1].bounds = wall.bounds;
+    let mut film = Film::new(&scene, &settings);
+    let shares = (0..8_u16).map(|frame| {
+        let frame = f32::from(frame);
+        let board = there * Mat4::from_translation(Vec3::new(0.02 * frame - 0.6, 0.0, 0.0));
+        move_board(&mut scene, board * Mat4::from_scale(Vec3::splat(0.2)));
+        pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
+        let eye = away + Vec3::new(steps * frame, 0.1, 0.8);
+        let camera = Camera::look_at(eye, away + Vec3::NEG_Z, Vec3::Y, 0.8);
+        film.draw(&camera).coarse.unwrap().shaded_fraction
+    });
+    shares.skip(1).collect()
+}
+
+#[test]
+fn what_rests_keeps_its_light_far_from_the_origin_too() {
+    for steps in [0.0, 0.01] {
+        let near = shaded_shares(Vec3::ZERO, steps);
+        for away in [1e4, 5e4] {
+            let far = shaded_shares(Vec3::new(away, 0.0, away), steps);
+            println!("KEEPS by {steps} m: {near:.3?}, {away} m away {far:.3?}");
+            let [near, far] = [&near, &far].map(|shares| shares.iter().sum::<f64>());
+            assert!(
+                far < 1.2 * near,
+                "by {steps} m, {away} m away: {near}, {far}"
             );
         }
     }
