@@ -21,7 +21,7 @@ pub fn follows_on(settings: &Settings) -> bool {
     match settings.shading.mode {
         Shading::Full => false,
         Shading::Variable => true,
-        Shading::Coarse => settings.coarse.history,
+        Shading::Coarse => settings.keeps_light(),
     }
 }
 
@@ -124,6 +124,30 @@ impl Drawing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use foveal::{CoarseBackend, CoarseSample, Composite, DebugView};
+
+    type Change = fn(&mut Settings);
+
+    fn coarse(change: Change) -> Settings {
+        Settings::default()
+            .with(|s| s.shading.mode = Shading::Coarse)
+            .with(change)
+    }
+
+    #[test]
+    fn what_keeps_no_light_follows_on_nothing() {
+        assert!(follows_on(&coarse(|_| {})));
+        let others: [Change; 5] = [
+            |s| s.coarse.history = false,
+            |s| s.coarse.composite = Composite::Smooth,
+            |s| s.coarse.sample = CoarseSample::Typical,
+            |s| s.coarse.backend = CoarseBackend::Stencil,
+            |s| s.picture.view = DebugView::Motion,
+        ];
+        for (i, other) in others.into_iter().enumerate() {
+            assert!(!follows_on(&coarse(other)), "{i}");
+        }
+    }
 
     #[test]
     fn a_frame_is_drawn_again_while_that_makes_room() {

@@ -6,9 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use super::RateImage;
 use super::acuity;
 use crate::stereo::{Eye, EyeLayout, LensFit};
-use crate::{
-    CoarseBackend, CoarseSample, Composite, RateCombine, RateSource, RefineEdges, Settings, Shading,
-};
+use crate::{Composite, RateCombine, RateSource, RefineEdges, Settings, Shading};
 
 /// Mirrors `Request` in `rate/request.wgsl`, where the fields are explained.
 #[repr(C)]
@@ -46,7 +44,7 @@ impl RequestUniform {
         let density = width / (2.0 * displays[0][0]);
         let refines = refines_bumps(s);
         let mut blocks = acuity::Blocks::of_quality(s.eye.quality_jod, density, refines);
-        if refines && keeps_light(s) {
+        if refines && s.is_rated_for_kept_light() {
             blocks = blocks.of_kept_light();
         }
         let gaze = |eye: u32, [x, y]: [f32; 2]| {
@@ -131,13 +129,6 @@ pub(super) fn refines_bumps(s: &Settings) -> bool {
     s.shading.mode == Shading::Coarse
         && s.coarse.composite == Composite::Light
         && s.coarse.refine_edges == RefineEdges::Graded
-}
-
-/// Whether light is kept from frame to frame, as far as settings tell.
-fn keeps_light(s: &Settings) -> bool {
-    s.coarse.history
-        && s.coarse.sample == CoarseSample::Center
-        && s.coarse.backend != CoarseBackend::Stencil
 }
 
 /// Overrides of the request pass's shader.

@@ -1,9 +1,30 @@
-//! Checks of coarse shading's settings.
+//! Checks of coarse shading's settings, and what follows from them.
 
 use crate::COARSEST_LEVEL;
 use crate::Error;
 use crate::Shading;
-use crate::settings::{DebugView, Settings};
+use crate::settings::{CoarseBackend, CoarseSample, Composite, DebugView, Settings};
+
+impl Settings {
+    /// Whether light is kept from frame to frame, so that pictures follow on the ones before. Devices
+    /// that offer only [`Gpu::reduced_limits`](crate::Gpu::reduced_limits) keep none all the same,
+    /// nor does any of a picture that is too large for it
+    /// ([`CoarseStats::notice`](crate::CoarseStats::notice) says so).
+    #[must_use]
+    pub fn keeps_light(&self) -> bool {
+        // Other views of a lit frame show its tiles.
+        self.picture.view == DebugView::Final && self.is_rated_for_kept_light()
+    }
+
+    /// The same whatever the view: views of rates show those of the lit frame.
+    pub(crate) fn is_rated_for_kept_light(&self) -> bool {
+        self.coarse.history
+            && self.shading.mode == Shading::Coarse
+            && self.coarse.composite == Composite::Light
+            && self.coarse.sample == CoarseSample::Center
+            && self.coarse.backend != CoarseBackend::Stencil
+    }
+}
 
 /// Checks the settings of coarse shading.
 pub(super) fn validate(s: &Settings) -> Result<(), Error> {

@@ -1,21 +1,21 @@
 //! What a frame does with the light history.
 
+use crate::Settings;
 use crate::gpu::Gpu;
 use crate::stereo::EyeLayout;
-use crate::{CoarseBackend, CoarseSample, Composite, DebugView, Settings, Shading};
 
 /// Frames at rest until each pixel was shaded by itself.
 pub(crate) const ROUND: u32 = 16;
 
 /// Whether these settings keep a light history on this device.
 pub(super) fn is_used(gpu: &Gpu, settings: &Settings) -> bool {
-    is_wanted(settings) && !gpu.is_reduced() && fits(&gpu.device.limits(), settings)
+    settings.keeps_light() && !gpu.is_reduced() && fits(&gpu.device.limits(), settings)
 }
 
 /// A sentence where the picture is too large for the light history that these settings ask for;
 /// else empty.
 pub(super) fn notice(limits: &wgpu::Limits, settings: &Settings) -> String {
-    if !is_wanted(settings) || fits(limits, settings) {
+    if !settings.keeps_light() || fits(limits, settings) {
         return String::new();
     }
     let pixels = limits.max_storage_buffer_binding_size / SAMPLE_BYTES;
@@ -23,17 +23,6 @@ pub(super) fn notice(limits: &wgpu::Limits, settings: &Settings) -> String {
         "no light is kept from frame to frame (--history), and every sample is reshaded: this device keeps that of \
          pictures of up to {pixels} pixels, {LARGEST_SIDE} a side"
     )
-}
-
-/// Whether these settings keep a light history where the device can.
-fn is_wanted(settings: &Settings) -> bool {
-    settings.coarse.history
-        // Other views of a lit frame show its tiles.
-        && settings.picture.view == DebugView::Final
-        && settings.shading.mode == Shading::Coarse
-        && settings.coarse.composite == Composite::Light
-        && settings.coarse.sample == CoarseSample::Center
-        && settings.coarse.backend != CoarseBackend::Stencil
 }
 
 /// What a frame does.
@@ -63,6 +52,7 @@ fn fits(limits: &wgpu::Limits, settings: &Settings) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Shading;
 
     #[test]
     fn a_picture_too_large_for_the_device_is_said() {

@@ -363,6 +363,7 @@ fn other_ways_of_shading_keep_nothing() {
         kept().with(|s| s.coarse.composite = crate::Composite::Paper),
         kept().with(|s| s.picture.view = crate::DebugView::Blocks),
     ] {
+        assert!(kept().keeps_light() && !settings.keeps_light());
         let mut film = Film::new(&scene, &settings);
         film.draw(camera);
         let first = seen(&film.renderer);
