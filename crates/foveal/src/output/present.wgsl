@@ -2,7 +2,7 @@
 
 // Whether the target encodes sRGB by itself.
 override ENCODED_BY_TARGET: bool = false;
-// Pictures side by side, which are stretched each by itself.
+// Pictures side by side, one or two, which are stretched each by itself.
 override PICTURES: u32 = 1u;
 
 @group(1) @binding(0) var picture: texture_2d<f32>;
@@ -19,12 +19,27 @@ fn full_screen(@builtin(vertex_index) index: u32) -> PresentVertex {
     return PresentVertex(vec4f(corner * 2.0 - 1.0, 0.0, 1.0), vec2f(corner.x, 1.0 - corner.y));
 }
 
+// Where a pixel of the target looks into the picture, by its width.
+fn looked_up(pixel: f32, place: f32) -> f32 {
+    let across = f32(textureDimensions(picture).x);
+    // The target's, exact in its right half, where alone it counts.
+    let target_across = round(pixel / place);
+    // Pictures are cut at whole pixels. Of an odd width the left one has one more: `eyes.wgsl`.
+    let cut = ceil(0.5 * across) / across;
+    let target_cut = ceil(0.5 * target_across);
+    let border = 0.5 / across;
+    if PICTURES == 1u {
+        return clamp(place, border, 1.0 - border);
+    }
+    if pixel < target_cut {
+        return clamp(place, border, cut - border);
+    }
+    return clamp(place + (cut - target_cut / target_across), cut + border, 1.0 - border);
+}
+
 @fragment
 fn present(in: PresentVertex) -> @location(0) vec4f {
-    let pictures = f32(PICTURES);
-    let border = 0.5 / f32(textureDimensions(picture).x);
-    let left = floor(in.place.x * pictures) / pictures;
-    let x = clamp(in.place.x, left + border, left + 1.0 / pictures - border);
+    let x = looked_up(in.position.x, in.place.x);
     let encoded = textureSampleLevel(picture, bilinear, vec2f(x, in.place.y), 0.0).rgb;
     if !ENCODED_BY_TARGET {
         return vec4f(encoded, 1.0);

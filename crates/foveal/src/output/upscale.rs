@@ -51,24 +51,29 @@ impl Upscale {
 mod tests {
     use foveal_generate as generate;
 
-    use crate::testing::{picture, rendered, small};
-    use crate::{Geometry, Output, RateSource, Shading};
+    use super::*;
+    use crate::testing::{gpu, picture, rendered, small, texels};
+    use crate::{Frame, Geometry, Output, RateSource, Shading};
 
-    /// A picture of `from`'s size, stretched as a sampler does that clamps to the border.
-    fn stretched(bytes: &[u8], from: (u32, u32), to: (u32, u32)) -> Vec<f32> {
-        let along = |i: u32, from: u32, to: u32| {
-            let at = (i as f32 + 0.5) * from as f32 / to as f32 - 0.5;
+    /// Pictures' widths and heights: of what is stretched and of what it becomes, each with what
+    /// lies beside it.
+    type Sizes = [(u32, u32); 2];
+
+    /// A picture of `has`'s size, stretched as a sampler does that clamps to the border.
+    fn stretched(bytes: &[u8], has: (u32, u32), to: (u32, u32), [from, into]: Sizes) -> Vec<f32> {
+        let along = |i: u32, texels: u32, (from, into): (u32, u32)| {
+            let at = (i as f32 + 0.5) * from as f32 / into as f32 - 0.5;
             let low = at.floor();
-            let clamped = |texel: f32| texel.clamp(0.0, from as f32 - 1.0) as u32;
+            let clamped = |texel: f32| texel.clamp(0.0, texels as f32 - 1.0) as u32;
             (clamped(low), clamped(low + 1.0), at - low)
         };
         let mut out = Vec::new();
         for y in 0..to.1 {
-            let (y0, y1, fy) = along(y, from.1, to.1);
+            let (y0, y1, fy) = along(y, has.1, (from.1, into.1));
             for x in 0..to.0 {
-                let (x0, x1, fx) = along(x, from.0, to.0);
+                let (x0, x1, fx) = along(x, has.0, (from.0, into.0));
                 for c in 0..4 {
-                    let at = |x: u32, y: u32| f32::from(bytes[((y * from.0 + x) * 4 + c) as usize]);
+                    let at = |x: u32, y: u32| f32::from(bytes[((y * has.0 + x) * 4 + c) as usize]);
                     let upper = at(x0, y0) * (1.0 - fx) + at(x1, y0) * fx;
                     let lower = at(x0, y1) * (1.0 - fx) + at(x1, y1) * fx;
                     out.push(upper * (1.0 - fy) + lower * fy);
@@ -110,11 +115,8 @@ mod tests {
                 // The mask is that of what is drawn, whatever size it is shown in.
                 assert_eq!(a.shaded_samples, b.shaded_samples);
             }
-            let expected = stretched(
-                &picture(&own),
-                (drawn.picture.width, drawn.picture.height),
-                size,
-            );
+            let from = (drawn.picture.width, drawn.picture.height);
+            let expected = stretched(&picture(&own), from, size, [from, size]);
             let bytes = picture(&large);
             assert_eq!(bytes.len(), expected.len());
             let off = bytes.iter().zip(&expected);
@@ -126,36 +128,67 @@ mod tests {
         }
     }
 
+    /// Both eyes side by side, half as large as they are shown.
+    fn beside(output: Output, width: u32) -> Settings {
+        small(width, 40).with(|s| {
+            s.picture.render_scale = 0.5;
+            s.stereo.mode = crate::Stereo::TwoPass;
+            s.stereo.ipd_m = 0.8;
+            s.stereo.output = output;
+        })
+    }
+
+    /// Columns of a picture of two eyes that show one of them.
+    fn columns(width: u32, eye: u32) -> std::ops::Range<u32> {
+        let first = width.div_ceil(2);
+        [0..first, first..width][eye as usize].clone()
+    }
+
     #[test]
     fn each_eyes_picture_is_stretched_by_itself() {
         let scene = generate::cornell();
         let camera = &scene.cameras[0];
-        for (output, width) in [(Output::SideBySide, 61), (Output::SideBySideHalf, 124)] {
-            let scaled = small(width, 40).with(|s| {
-                s.picture.render_scale = 0.5;
-                s.stereo.mode = crate::Stereo::TwoPass;
-                s.stereo.ipd_m = 0.8;
-                s.stereo.output = output;
-            });
+        let half = [124, 125, 126, 127].map(|width| (Output::SideBySideHalf, width));
+        for (output, width) in [(Output::SideBySide, 61)].into_iter().chain(half) {
+            let scaled = beside(output, width);
             let drawn = scaled.drawn();
             let [large, own] = [&scaled, &drawn].map(|s| picture(&rendered(&scene, camera, s)));
-            let (from, to) = (drawn.picture_size(), scaled.picture_size());
-            let half = |bytes: &[u8], width: u32, eye: u32| -> Vec<u8> {
-                let rows = bytes.chunks_exact(4 * width as usize);
-                let half = 2 * width as usize;
-                let at = half * eye as usize;
-                rows.flat_map(|row| row[at..at + half].to_vec()).collect()
-            };
+            let sizes = [drawn.picture_size(), scaled.picture_size()];
             for eye in 0..2 {
-                let [a, b] = [half(&large, to.0, eye), half(&own, from.0, eye)];
-                let expected = stretched(&b, (from.0 / 2, from.1), (to.0 / 2, to.1));
-                let off = a
-                    .iter()
-                    .zip(&expected)
-                    .map(|(&a, b)| (f32::from(a) - b).abs());
+                let [from, to] = sizes.map(|(width, _)| columns(width, eye));
+                let cut = |bytes: &[u8], (width, _): (u32, u32), of: &std::ops::Range<u32>| {
+                    let of = 4 * of.start as usize..4 * of.end as usize;
+                    let rows = bytes.chunks_exact(4 * width as usize);
+                    rows.flat_map(|row| row[of.clone()].to_vec())
+                        .collect::<Vec<u8>>()
+                };
+                let [shown, seen] = [cut(&large, sizes[1], &to), cut(&own, sizes[0], &from)];
+                let [has, to] = [(from, 0), (to, 1)].map(|(of, i)| (of.len() as u32, sizes[i].1));
+                let expected = stretched(&seen, has, to, sizes);
+                let off = (shown.iter().zip(&expected)).map(|(&a, b)| (f32::from(a) - b).abs());
                 let off = off.fold(0.0, f32::max);
-                assert!(off <= 2.0, "{output:?}, eye {eye}: {off}");
+                assert!(off <= 2.0, "{output:?} of {width}, eye {eye}: {off}");
             }
         }
+    }
+
+    #[test]
+    fn an_odd_picture_of_both_eyes_is_presented_as_it_is() {
+        let scene = generate::cornell();
+        let camera = &scene.cameras[0];
+        let settings = beside(Output::SideBySideHalf, 61).with(|s| s.picture.render_scale = 1.0);
+        let mut renderer = rendered(&scene, camera, &settings);
+        let (size, usage) = ((61, 40), wgpu::TextureUsages::COPY_SRC);
+        let view = target(gpu(), "shown", size, PICTURE_FORMAT, usage);
+        let shown = Target {
+            view: &view,
+            format: PICTURE_FORMAT,
+        };
+        let frame = Frame::new(camera);
+        pollster::block_on(renderer.render_to(&frame, shown)).expect("the frame is drawn");
+        let (shown, picture) = (texels::<[u8; 4]>(&view), picture(&renderer));
+        let mut pairs = shown.as_flattened().iter().zip(&picture);
+        // Samplers weigh in steps of 1/256.
+        assert!(pairs.all(|(a, b)| a.abs_diff(*b) <= 1));
     }
 }
