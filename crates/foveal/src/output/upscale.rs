@@ -9,8 +9,6 @@ use crate::{Settings, Target};
 #[derive(Debug)]
 pub(crate) struct Upscale {
     pass: PresentPass,
-    /// Side by side in what is drawn.
-    pictures: usize,
     picture_view: wgpu::TextureView,
 }
 
@@ -21,18 +19,22 @@ impl Upscale {
         let none = wgpu::TextureUsages::empty();
         (settings.drawn().picture_size() != size).then(|| Self {
             pass: PresentPass::new(gpu),
-            pictures: settings.pictures_beside(),
             picture_view: target(gpu, "upscaled picture", size, PICTURE_FORMAT, none),
         })
     }
 
-    /// Encodes the pass.
-    pub(crate) fn stretch(&mut self, recorder: &mut Recorder<'_>, drawn: &wgpu::TextureView) {
+    /// Encodes the pass. `pictures`: side by side in what is drawn, each stretched by itself.
+    pub(crate) fn stretch(
+        &mut self,
+        recorder: &mut Recorder<'_>,
+        drawn: &wgpu::TextureView,
+        pictures: usize,
+    ) {
         let target = Target {
             view: &self.picture_view,
             format: PICTURE_FORMAT,
         };
-        self.pass.present(recorder, drawn, target, self.pictures);
+        self.pass.present(recorder, drawn, target, pictures);
     }
 
     /// The picture.
@@ -190,5 +192,25 @@ mod tests {
         let mut pairs = shown.as_flattened().iter().zip(&picture);
         // Samplers weigh in steps of 1/256.
         assert!(pairs.all(|(a, b)| a.abs_diff(*b) <= 1));
+    }
+
+    #[test]
+    fn a_stretched_picture_follows_the_output() {
+        let scene = generate::cornell();
+        let camera = &scene.cameras[0];
+        let both = [Output::SideBySideHalf, Output::Flat].map(|output| beside(output, 124));
+        let alone = beside(Output::Flat, 124).with(|s| s.stereo.mode = crate::Stereo::Off);
+        for [before, now] in [
+            [&both[0], &both[1]],
+            [&both[1], &both[0]],
+            [&both[0], &alone],
+        ] {
+            let mut renderer = rendered(&scene, camera, before);
+            pollster::block_on(renderer.set_settings(now)).expect("settings fit");
+            renderer.redraw(camera);
+            let fresh = rendered(&scene, camera, now);
+            let output = now.stereo.output;
+            assert!(picture(&renderer) == picture(&fresh), "{output:?}");
+        }
     }
 }

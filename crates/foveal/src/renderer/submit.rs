@@ -247,16 +247,12 @@ impl Renderer {
         if let Some(eyes_shown) = &stages.eyes_shown {
             eyes_shown.show(recorder, seen.lenses.as_ref(), targets);
         }
+        let (shown, pictures) = (targets.shown(), stages.settings.pictures_beside());
         if let Some(upscale) = &mut self.upscale {
-            upscale.stretch(recorder, targets.shown());
+            upscale.stretch(recorder, shown, pictures);
         }
         if let Some(target) = target {
-            (self.present).present(
-                recorder,
-                targets.shown(),
-                target,
-                stages.settings.pictures_beside(),
-            );
+            (self.present).present(recorder, shown, target, pictures);
         }
         self.timer.resolve(&mut encoder);
         cpu.stage("encode");
