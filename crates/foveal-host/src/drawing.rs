@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use foveal::{Frame, FrameStats, RadianceImage, Renderer, Settings, Shading};
+use foveal::{Frame, FrameStats, RadianceImage, Renderer, Settings, Shading, Shadows};
 use foveal_scene::Scene;
 use pollster::block_on;
 
@@ -18,6 +18,14 @@ pub fn moment(frame: u32, fps: f32) -> f32 {
 
 /// Whether a frame's picture depends on the frames before.
 pub fn follows_on(settings: &Settings) -> bool {
+    let lighting = &settings.lighting;
+    // Tiles that wait show shadows of frames before.
+    let waits = lighting.shadows != Shadows::Off && lighting.shadow_budget > 0;
+    waits || keeps_shading(settings)
+}
+
+/// Whether shading is kept from frame to frame, so that a moment drawn twice differs.
+fn keeps_shading(settings: &Settings) -> bool {
     match settings.shading.mode {
         Shading::Full => false,
         Shading::Variable => true,
@@ -65,7 +73,8 @@ impl Drawing {
     }
 
     /// Draws a moment, with motion since another. Its picture depends on the two alone, not on the
-    /// frames drawn before, unless it follows on ([`follows_on`]) and the other is what was drawn last.
+    /// frames drawn before, unless it follows on ([`follows_on`]): shading that is kept where the
+    /// other is what was drawn last, shadows that wait on whatever was.
     pub fn draw_moment(&mut self, time_s: f32, previous_time_s: f32) -> anyhow::Result<FrameStats> {
         let is_elsewhere = self.posed_s != Some(previous_time_s);
         if is_elsewhere {
@@ -86,14 +95,14 @@ impl Drawing {
         Ok(block_on(self.renderer.render(&frame))?)
     }
 
-    /// As [`Drawing::draw_moment`]; where the picture does not follow on from others, with room for
-    /// all of its surfaces, so that it does not depend on the frames before.
+    /// As [`Drawing::draw_moment`]; where no shading is kept, with room for all of the picture's
+    /// surfaces, so that which of them it shows does not depend on the frames before.
     pub fn draw_picture(
         &mut self,
         time_s: f32,
         previous_time_s: f32,
     ) -> anyhow::Result<FrameStats> {
-        if follows_on(self.renderer.settings()) {
+        if keeps_shading(self.renderer.settings()) {
             return self.draw_moment(time_s, previous_time_s);
         }
         draw_with_room(|| self.draw_moment(time_s, previous_time_s))
@@ -147,6 +156,19 @@ mod tests {
         for (i, other) in others.into_iter().enumerate() {
             assert!(!follows_on(&coarse(other)), "{i}");
         }
+    }
+
+    #[test]
+    fn shadows_that_wait_follow_on() {
+        let full = |shadows, budget| {
+            Settings::default().with(|s| {
+                s.shading.mode = Shading::Full;
+                (s.lighting.shadows, s.lighting.shadow_budget) = (shadows, budget);
+            })
+        };
+        assert!(follows_on(&full(Shadows::Hard, 300)));
+        assert!(!follows_on(&full(Shadows::Off, 300)));
+        assert!(!follows_on(&full(Shadows::Soft, 0)));
     }
 
     #[test]

@@ -77,8 +77,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     if args.frames.share && !args.quiet && follows_on(&settings) {
         console::warn(
-            "frames with kept light or variable shading follow on the ones before, and shared frames do not: neighbours \
-             may differ; --part keeps them together",
+            "frames with kept light, variable shading or a shadow budget follow on the ones before, and shared frames do \
+             not: neighbours may differ; --part keeps them together",
         );
     }
 
