@@ -1,5 +1,6 @@
-//! Which tiles a frame wants, and how large: a function of lights, view, gaze and settings alone, so
-//! that the picture does not depend on what was drawn before, nor on culling.
+//! Which tiles a frame wants, and how large: a function of lights, view, gaze, settings and the box of
+//! the scene in its pose alone, so that the picture does not depend on what was drawn before, nor on
+//! culling.
 
 use std::collections::BTreeSet;
 
@@ -21,7 +22,8 @@ pub(super) const CASCADES: usize = 4;
 /// Each cascade is wider by this factor than the one before.
 const CASCADE_STEP: i32 = 2;
 /// Cascades move in steps of this part of their radius, and hold everything within
-/// `1 - CASCADE_MOVE / 2` of it around the eye.
+/// `1 - CASCADE_MOVE / 2` of it around the eye, or around the place of the scene's box that is nearest
+/// to the eye.
 const CASCADE_MOVE: f32 = 0.25;
 /// Largest tiles, as powers of two: a cube's side, a spot light's, a cascade.
 const LARGEST_SIDE: u32 = 9;
