@@ -3,8 +3,6 @@
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use toml::Table;
-
 use super::App;
 use crate::command;
 use crate::worker::Rgba;
@@ -30,12 +28,12 @@ impl App {
 
     /// The settings as a file has them; without a size where that is the window's.
     fn settings_text(&self) -> anyhow::Result<String> {
-        let mut table = Table::try_from(&self.settings)?;
-        if self.display.fit {
-            table.remove("width");
-            table.remove("height");
-        }
-        Ok(toml::to_string(&table)?)
+        // A table of values would lose the list's order, and have numbers of 64 bits.
+        let text = toml::to_string(&self.settings)?;
+        let sizes = ["width = ", "height = "];
+        let is_kept =
+            |line: &&str| !self.display.fit || !sizes.iter().any(|size| line.starts_with(size));
+        Ok(text.split_inclusive('\n').filter(is_kept).collect())
     }
 
     fn tell_of(
@@ -97,6 +95,7 @@ mod tests {
     use std::sync::{Arc, Mutex};
 
     use anyhow::bail;
+    use toml::Table;
 
     use super::*;
     use crate::app::tests::{app, loaded};
@@ -122,6 +121,19 @@ mod tests {
             let settings: foveal::Settings = table.try_into().unwrap();
             assert_eq!(settings, app.settings);
         }
+    }
+
+    #[test]
+    fn saved_settings_read_as_people_write_them_in_the_lists_order() {
+        let app = app();
+        let text = app.settings_text().unwrap();
+        for line in ["contrast-threshold = 0.04", "ipd = 0.063"] {
+            assert!(text.lines().any(|l| l == line), "{line}: {text}");
+        }
+        let keys: Vec<&str> = text.lines().filter_map(|l| l.split(" = ").next()).collect();
+        let of_size = |key: &&str| ["width", "height"].contains(key);
+        let listed = foveal::Settings::ALL.iter().map(|setting| setting.key);
+        assert_eq!(keys, listed.filter(|key| !of_size(key)).collect::<Vec<_>>());
     }
 
     #[test]
