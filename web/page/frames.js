@@ -6,7 +6,7 @@ import { showFigures, showFooting } from './figures.js';
 import { writeLink } from './link.js';
 import { $, page, redraw, say, wait } from './page.js';
 import { hasStopped, loadRenderer, orLost, orStopped } from './renderer.js';
-import { showScene } from './scenes.js';
+import { showFirst, showScene } from './scenes.js';
 
 /** Even widths: side by side each eye has half. */
 function pictureSize() {
@@ -77,7 +77,7 @@ async function mend(cause) {
   if (hasStopped(cause)) return restart(cause, true);
   say(String(cause));
   if (!/lost/i.test(String(cause))) return;
-  await reopen('Opening the graphics device again…', async () => {});
+  await reopen('Opening the graphics device again…', async () => {}, page.home && page.camera.place());
 }
 
 /** After the renderer has stopped: another one takes its place, and shows the scene before. */
@@ -85,6 +85,8 @@ async function restart(cause, whileDrawing = false) {
   if (!hasStopped(cause)) return say(String(cause));
   say(`The renderer stopped (${cause.message}) and was started again`);
   let place = page.home && page.camera.place();
+  // What stopped it before anything was shown is not asked for again.
+  page.asked = page.home && page.asked;
   // It may be the scene itself that cannot be drawn.
   if (whileDrawing && page.stoppedAt === page.scene) {
     if (page.scene.name === 'demo') return say(`The renderer stopped again (${cause.message}). Reload the page to try again.`);
@@ -96,13 +98,15 @@ async function restart(cause, whileDrawing = false) {
 }
 page.restart = restart;
 
-async function reopen(words, load, place = page.camera.place()) {
+async function reopen(words, load, place) {
   wait(words);
   try {
     await load();
     await openViewer();
+    // The device may be lost again before the scene is there.
+    if (place) page.camera.reset(place, page.home.radius);
     applySettings();
-    await showScene(page.scene, place);
+    await (page.home ? showScene(page.scene, place) : showFirst());
   } catch (again) {
     say(`${again}. Reload the page to try again.`);
   }

@@ -53,13 +53,13 @@ function showReduced(causes) {
 
 /** Shows what an address asks for; tells whether its scene is shown. */
 function showLink(address) {
-  const { scene, place } = readLink(address);
+  page.asked = readLink(address);
   $('scale').value = page.scale;
   placeSplit();
   showTechnique(page.technique);
   // It stays the address while its scene is loaded.
   keepLink();
-  return showScene(scene, place).catch((cause) => page.restart(cause));
+  return showScene(page.asked.scene, page.asked.place).catch((cause) => page.restart(cause));
 }
 
 /** Follows addresses that the open page is given: by hand, or by the way back. Those that it writes itself tell nobody. */
@@ -90,7 +90,7 @@ async function main() {
   followLinks();
   await alone(async () => {
     await showLink(location.hash);
-    if (!page.home && !page.stoppedAt) await showScene({ name: 'demo', bytes: null });
+    if (!page.home && !page.stoppedAt && !page.lost) await showScene({ name: 'demo', bytes: null });
   });
   requestAnimationFrame(turn);
 }

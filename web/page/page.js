@@ -8,7 +8,7 @@ export const $ = (id) => document.getElementById(id);
 /** Everything that a frame hangs on. */
 export const page = {
   viewer: null,
-  // Why the canvas has lost its context, and whom to tell.
+  // Why the device is gone, and whom to tell.
   lost: null,
   fail: null,
   settings: null,
@@ -27,6 +27,8 @@ export const page = {
   // What is shown: a generated scene's name, or a dropped file's name and bytes.
   scene: { name: 'demo', bytes: null },
   home: null,
+  // What the address asked for, its scene and the camera's place in it: shown first.
+  asked: null,
   stale: true,
   // The viewer has not heard of the settings' last change.
   unapplied: true,

@@ -20,6 +20,11 @@ export function hasStopped(cause) {
   return cause instanceof WebAssembly.RuntimeError;
 }
 
+/** Whether the viewer says that its device is gone; other sentences may hold the word in a scene's name. */
+export function isLost(cause) {
+  return String(cause).startsWith('the graphics device was lost');
+}
+
 /**
  * A promise of the renderer that also fails where the renderer stops meanwhile: a stop within a future is told to the
  * window alone, and the future never ends.

@@ -3,7 +3,7 @@
 import { tellSettings } from './chooser.js';
 import { writeLink } from './link.js';
 import { $, alone, forgetCosts, page, printable, redraw, say, wait } from './page.js';
-import { hasStopped, orLost, rehearse } from './renderer.js';
+import { hasStopped, isLost, orLost, rehearse } from './renderer.js';
 
 const SCENES = ['demo', 'cornell', 'materials-grid', 'alpha', 'demo:1000'];
 
@@ -43,12 +43,19 @@ export async function showScene(scene, place) {
     return true;
   } catch (cause) {
     if (hasStopped(cause)) throw cause;
+    if (isLost(cause)) page.lost = String(cause);
     say(String(cause));
     $('scene').value = page.scene.name;
     return false;
   } finally {
     wait();
   }
+}
+
+/** Where nothing is shown yet: what the address asked for, or else the demo scene. A lost device can show neither. */
+export async function showFirst() {
+  if (page.asked) await showScene(page.asked.scene, page.asked.place);
+  if (!page.home && !page.lost) await showScene({ name: 'demo', bytes: null });
 }
 
 /** Shows a scene when nothing else is at work; a renderer that stops at it is loaded anew, with the scene before. */

@@ -29,14 +29,15 @@ export async function open(graphics = 'webgpu', folder = undefined) {
   return {
     address,
     browser,
-    /** Opens the page with what a link says; `said` collects errors and warnings. */
-    async visit(link = '', viewport = { width: 1280, height: 720 }) {
+    /** Opens the page with what a link says, after `before` ran in it; `said` collects errors and warnings. */
+    async visit(link = '', viewport = { width: 1280, height: 720 }, before = () => {}) {
       const context = await browser.newContext({ viewport, acceptDownloads: true });
       const page = await context.newPage();
       page.setDefaultTimeout(PATIENCE);
       const said = [];
       page.on('console', (m) => { if (m.type() === 'error') said.push(m.text()); });
       page.on('pageerror', (e) => said.push(String(e)));
+      await page.addInitScript(before);
       await page.goto(`${address}${link}`);
       return { page, said };
     },
@@ -46,6 +47,26 @@ export async function open(graphics = 'webgpu', folder = undefined) {
       await new Promise((done) => server.close(done));
     },
   };
+}
+
+/** For `visit`: gives the page's first device back as soon as the page has it. */
+export function loseFirst() {
+  let viewer = null;
+  let opened = 0;
+  const lose = {
+    get: () => viewer,
+    set(next) {
+      viewer = next;
+      if (next && opened++ === 0) next.lose_device();
+    },
+  };
+  Object.defineProperty(window, 'foveal', {
+    configurable: true,
+    set(page) {
+      Object.defineProperty(page, 'viewer', lose);
+      Object.defineProperty(window, 'foveal', { value: page });
+    },
+  });
 }
 
 /** Waits until a frame of the present settings is on the canvas. */

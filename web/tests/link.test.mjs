@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { open, picture, settled } from './browser.mjs';
+import { loseFirst, open, picture, settled } from './browser.mjs';
 import { drop, triangle } from './files.mjs';
 import { difference } from './native.mjs';
 
@@ -86,6 +86,20 @@ test('a page that is opened with a scene that it does not have shows the demo sc
   const link = await written(page);
   assert.deepEqual([link.get('scene'), link.get('technique'), link.has('eye')], ['demo', 'culling', false]);
   await page.context().close();
+});
+
+test('a link\'s scene is shown in its place where the device is lost while it loads', async () => {
+  for (const place of ['', '&eye=0,1,2&target=0,1,0']) {
+    const link = `#scene=cornell&technique=culling&scale=0.25${place}`;
+    const visits = [await site.visit(link, SMALL), await site.visit(link, SMALL, loseFirst)];
+    const [whole, lost] = visits.map(({ page }) => page);
+    await lost.locator('.message').waitFor();
+    assert.match(await lost.locator('.message').textContent(), /lost/i);
+    await lost.waitForFunction(() => window.foveal.home);
+    assert.ok((await picture(lost)).bytes.equals((await picture(whole)).bytes));
+    assert.equal(String(await written(lost)), String(await written(whole)));
+    for (const page of [whole, lost]) await page.context().close();
+  }
 });
 
 test('an address that asks for the reduced renderer loads it', async () => {

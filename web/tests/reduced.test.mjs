@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { footing, open, picture, savePicture, settled } from './browser.mjs';
+import { footing, loseFirst, open, picture, savePicture, settled } from './browser.mjs';
 import { drop, triangle } from './files.mjs';
 import { difference, flip, redPixels } from './native.mjs';
 
@@ -109,6 +109,15 @@ test('a lost device and a lost context are opened again', async () => {
     assert.ok((await picture(page)).bytes.equals(first.bytes));
     await page.locator('.message button').click();
   }
+  await page.context().close();
+});
+
+test('a link\'s scene is shown where the device is lost while it loads', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25', SMALL, loseFirst);
+  await page.waitForFunction(() => window.foveal.home);
+  assert.match(await page.locator('.message').textContent(), /lost/i);
+  await settled(page);
+  assert.deepEqual(await page.evaluate(() => [window.foveal.scene.name, window.foveal.camera.touched]), ['cornell', false]);
   await page.context().close();
 });
 
