@@ -18,8 +18,8 @@ pub(super) struct Materials<'a> {
     number_of: HashMap<&'a str, usize>,
     /// Of each in use: its number in the document.
     found: Vec<Option<usize>>,
-    /// Names of the libraries that are read.
-    libraries: HashSet<String>,
+    /// Names of the libraries that are read, or cannot be.
+    tried: HashSet<String>,
     resolver: &'a Resolver<'a>,
     builder: &'a mut Builder,
     notes: &'a mut Vec<Warning>,
@@ -37,7 +37,7 @@ impl<'a> Materials<'a> {
             used,
             number_of: numbers.map(|(i, name)| (name.as_str(), i)).collect(),
             found: vec![None; used.len()],
-            libraries: HashSet::new(),
+            tried: HashSet::new(),
             resolver,
             builder,
             notes,
@@ -47,30 +47,50 @@ impl<'a> Materials<'a> {
     /// Reads what a line names: one library with blanks in its name, or several.
     pub(super) fn read(&mut self, line: &str) {
         let line = line.replace('\\', "/");
-        let read = self.read_one(&line).or_else(|cause| {
-            let mut names = line.split_whitespace();
-            match names.clone().count() {
-                0 | 1 => Err(cause),
-                _ => names.try_for_each(|name| self.read_one(name)),
-            }
-        });
-        if let Err(cause) = read {
+        let Err(cause) = self.read_one(&line) else {
+            return;
+        };
+        let causes = if line.contains(char::is_whitespace) {
+            // Several names, it is none itself.
+            self.tried.remove(&line);
+            self.read_each(&line).unwrap_or_else(|| vec![cause])
+        } else {
+            vec![cause]
+        };
+        for cause in causes {
             let text = format!("mtllib: {cause}");
             self.notes
                 .push(Warning::new(Code::MaterialUnreadable, text));
         }
     }
 
+    /// Reads the libraries of a line; tells of those that cannot be, or nothing where none can.
+    fn read_each(&mut self, line: &str) -> Option<Vec<String>> {
+        let mut causes = Vec::new();
+        let mut has_read = false;
+        for name in line.split_whitespace().take_while(|w| !w.starts_with('#')) {
+            match self.read_one(name) {
+                Ok(()) => has_read = true,
+                Err(cause) if cause == TOO_MANY_LIBRARIES => {
+                    causes.push(cause);
+                    return Some(causes);
+                }
+                Err(cause) => causes.push(cause),
+            }
+        }
+        has_read.then_some(causes)
+    }
+
     /// Reads a library, once.
     fn read_one(&mut self, name: &str) -> Result<(), String> {
-        if self.libraries.contains(name) {
+        if self.tried.contains(name) {
             return Ok(());
         }
-        if self.libraries.len() == MAX_LIBRARIES {
+        if self.tried.len() == MAX_LIBRARIES {
             return Err(TOO_MANY_LIBRARIES.to_owned());
         }
+        self.tried.insert(name.to_owned());
         let bytes = (self.resolver)(name)?;
-        self.libraries.insert(name.to_owned());
         let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder);
         for material in mtl::parse(&bytes) {
             let Some(&number) = self.number_of.get(material.name.as_str()) else {

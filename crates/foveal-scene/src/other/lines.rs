@@ -47,8 +47,20 @@ fn has_comment(line: &str) -> bool {
     line.starts_with('#') || line.contains(" #") || line.contains("\t#")
 }
 
+/// What stands before a comment behind a name. Its `#` stands alone: there are names as `Material #25`.
+pub(super) fn uncommented(text: &str) -> &str {
+    let is_alone = |&(at, _): &(usize, &str)| {
+        let (before, after) = (&text[..at], &text[at + 1..]);
+        (before.is_empty() || before.ends_with(char::is_whitespace))
+            && (after.is_empty() || after.starts_with(char::is_whitespace))
+    };
+    let comment = text.match_indices('#').find(is_alone);
+    comment.map_or(text, |(at, _)| text[..at].trim_end())
+}
+
 /// A name as it is kept.
 pub(super) fn name_of(text: &str) -> String {
+    let text = uncommented(text);
     let mut end = text.len().min(MAX_NAME);
     while !text.is_char_boundary(end) {
         end -= 1;

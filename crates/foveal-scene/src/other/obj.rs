@@ -11,7 +11,7 @@ use serde_json::json;
 
 use super::builder::{Builder, plain_surface};
 use super::libraries::{MAX_LIBRARIES, Materials, TOO_MANY_LIBRARIES};
-use super::lines::{Line, lines, name_of};
+use super::lines::{Line, lines, name_of, uncommented};
 use super::{Converted, Refusal, check_memory, linear};
 use crate::error::Limit;
 use crate::gltf::Resolver;
@@ -145,20 +145,25 @@ impl File {
                     current = None;
                 }
                 "usemtl" => {
-                    material = (!rest.is_empty()).then(|| {
+                    let name = name_of(rest);
+                    material = (!name.is_empty()).then(|| {
                         let known = number_of.len() as u32;
-                        *number_of.entry(name_of(rest)).or_insert_with_key(|name| {
+                        *number_of.entry(name).or_insert_with_key(|name| {
                             file.used.push(name.clone());
                             known
                         })
                     });
                     current = None;
                 }
-                "mtllib" if !file.libraries.iter().any(|library| library == rest) => {
+                "mtllib" => {
+                    let line = uncommented(rest);
+                    if file.libraries.iter().any(|library| library == line) {
+                        continue;
+                    }
                     if file.libraries.len() == MAX_LIBRARIES {
                         return Err(broken(TOO_MANY_LIBRARIES));
                     }
-                    file.libraries.push(rest.to_owned());
+                    file.libraries.push(line.to_owned());
                 }
                 "f" | "fo" | "l" | "p" => {
                     let group = *current.get_or_insert_with(|| {

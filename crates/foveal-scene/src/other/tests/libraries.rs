@@ -38,6 +38,44 @@ fn libraries_beyond_the_sixty_fourth_of_a_line_are_not_read() {
     );
 }
 
+#[test]
+fn a_library_that_is_missing_hides_none_of_its_line() {
+    let line = |names: &str| {
+        let text = HOUSE.replace("house.mtl", names);
+        load(
+            "a.obj",
+            text.as_bytes(),
+            &[("house.mtl", "newmtl brick\nnewmtl glass\n")],
+        )
+        .unwrap()
+    };
+    for names in ["a.mtl house.mtl b.mtl", "house.mtl a.mtl b.mtl"] {
+        let scene = line(names);
+        assert_eq!(scene.materials.len(), 2, "{names}");
+        let told: Vec<&str> = scene.warnings.iter().map(|w| w.text.as_str()).collect();
+        let sentence = |name: &str| format!("mtllib: \"{name}\" cannot be read: there is none");
+        assert_eq!(told, ["a.mtl", "b.mtl"].map(sentence), "{names}");
+    }
+    // Of which nothing is there may be one name.
+    let scene = line("my home.mtl");
+    let sentence = "mtllib: \"my home.mtl\" cannot be read: there is none";
+    assert_eq!(scene.warnings[0].text, sentence);
+}
+
+#[test]
+fn libraries_that_are_missing_count_among_the_sixty_four() {
+    let asked = AtomicUsize::new(0);
+    let resolver = |_: &str| {
+        asked.fetch_add(1, Ordering::Relaxed);
+        Err("no such file".to_owned())
+    };
+    let names: String = (0..1000).map(|i| format!("{i}.mtl ")).collect();
+    let text = HOUSE.replace("house.mtl", &names);
+    load_bytes(text.as_bytes(), "a.obj", &LoadOptions::default(), &resolver).unwrap();
+    // The line as a whole may be a name as well.
+    assert_eq!(asked.into_inner(), 1 + 64);
+}
+
 /// Files that are asked for where a library in a folder names a picture.
 fn asked_for(picture: &str, in_folder: bool) -> Vec<String> {
     let asked = Mutex::new(Vec::new());

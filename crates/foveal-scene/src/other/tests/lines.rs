@@ -34,3 +34,18 @@ fn a_byte_order_mark_before_the_first_line_is_no_part_of_it() {
     assert_eq!(marked.meshes, plain.meshes);
     assert_eq!(marked.materials, plain.materials);
 }
+
+#[test]
+fn a_comment_behind_a_name_is_no_part_of_it() {
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    let text = format!(
+        "mtllib a.mtl # by hand\n{corners}o roof\t# in the west\nusemtl red # tiles\nf 1 2 3\n\
+         usemtl Material #25\nf 1 2 3\nusemtl # none\nf 1 2 3\n"
+    );
+    let material = "newmtl red # as bricks\nnewmtl Material #25\n";
+    let scene = load("a.obj", text.as_bytes(), &[("a.mtl", material)]).unwrap();
+    assert_eq!(scene.warnings, []);
+    assert!(scene.objects.iter().all(|o| o.name == "roof"));
+    let names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!(names[..2], ["red", "Material #25"]);
+}
