@@ -1,5 +1,5 @@
-//! Elements of PLY files in text, a line each; empty lines are none. Numbers are all that C and Rust
-//! write: the crate `ply-rs-bw` refuses `nan`, `inf`, `1.` and `.5`.
+//! Elements of PLY files in text, a line each; empty lines are none. Numbers are what Rust and C99
+//! (`%f`, `%g`) write: the crate `ply-rs-bw` refuses `nan`, `-nan(ind)`, `inf`, `1.` and `.5`.
 
 use std::io::{BufRead, Cursor};
 use std::str::{FromStr, SplitAsciiWhitespace};
@@ -82,7 +82,18 @@ fn list(scalar: &ScalarType, words: &mut SplitAsciiWhitespace<'_>) -> Result<Pro
 
 fn number<T: FromStr>(words: &mut SplitAsciiWhitespace<'_>) -> Result<T, String> {
     let word = words.next().ok_or("has too few numbers")?;
-    word.parse().map_err(|_| not_a_number(word))
+    let number = without_payload(word);
+    number.parse().map_err(|_| not_a_number(word))
+}
+
+/// A NaN without what C may write behind it: `-nan(ind)`, `nan(0x8000)`.
+fn without_payload(word: &str) -> &str {
+    let is_nan = |number: &str| {
+        let name = number.trim_start_matches(['+', '-']);
+        name.eq_ignore_ascii_case("nan")
+    };
+    let cut = word.split_once('(').map(|(number, _)| number);
+    cut.filter(|number| is_nan(number)).unwrap_or(word)
 }
 
 /// As many numbers as the first one says.
@@ -108,10 +119,11 @@ mod tests {
                  end_header\n"
             )
         };
-        let text = header("ascii") + "nan 0\n0 -nan\n\n1. .5\r\n  \n+2e0 -.25\nNaN 1\ninf -inf";
+        let text = header("ascii")
+            + "-nan(ind) 0\n0 nan(0x8000)\n\n1. .5\r\n  \n+2e0 -.25\nNaN 1\ninf -inf";
         let (nan, infinity) = (f32::NAN, f32::INFINITY);
         let numbers = [
-            nan, 0., 0., -nan, 1., 0.5, 2., -0.25, nan, 1., infinity, -infinity,
+            -nan, 0., 0., nan, 1., 0.5, 2., -0.25, nan, 1., infinity, -infinity,
         ];
         let mut binary = header("binary_little_endian").into_bytes();
         binary.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
