@@ -68,7 +68,7 @@ use crate::error::{Flaw, FlawKind, Parsed};
 use crate::timings::Stopwatch;
 use crate::{Clip, Code, LoadOptions, Material, Scene, SceneError, Warning};
 
-/// Gives the bytes of an external file by its relative path, or the reason why not.
+/// Gives the bytes of an external file by its path, or the reason why not.
 pub(crate) type Resolver<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + Sync + 'a;
 
 /// More warnings than this say no more.

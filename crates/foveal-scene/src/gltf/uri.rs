@@ -1,4 +1,4 @@
-//! URIs of buffers and images: data URIs are decoded here, relative ones prepared for the resolver.
+//! URIs of buffers and images: data URIs are decoded here, paths prepared for the resolver.
 
 use base64::Engine;
 use base64::alphabet::{STANDARD, URL_SAFE};
@@ -33,7 +33,7 @@ pub(crate) fn parse(uri: &str) -> Result<Uri, String> {
             .all(|c| c.is_ascii_alphanumeric() || "+-.".contains(c))
     {
         return Err(format!(
-            "has the scheme \"{}\"; only relative paths and data URIs are read",
+            "has the scheme \"{}\"; only paths and data URIs are read",
             &uri[..colon]
         ));
     }
@@ -88,7 +88,8 @@ mod tests {
     #[test]
     fn schemes_are_refused_and_escapes_decoded() {
         assert!(parse("http://example.org/a.bin").is_err());
-        assert!(parse("file:///etc/hosts").is_err());
+        let cause = "has the scheme \"file\"; only paths and data URIs are read";
+        assert_eq!(parse("file:///etc/hosts"), Err(cause.to_owned()));
         assert!(parse("C:/x.bin").is_err());
         assert!(parse("").is_err());
         assert_eq!(
