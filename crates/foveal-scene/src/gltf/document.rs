@@ -20,7 +20,7 @@ use super::meshopt::Coded;
 use super::nodes::NodeDef;
 use super::skins::SkinDef;
 use crate::error::{Flaw, Parsed};
-use crate::pose::{MaterialPart, Target};
+use crate::pose::{MaterialPart, Target, UvPart};
 use crate::{Code, Sampler, Warning};
 
 /// How many of each thing there are; references are checked against these.
@@ -185,7 +185,7 @@ impl Document {
         Ok(())
     }
 
-    /// Materials whose generated tangents an animation turns.
+    /// Materials whose generated tangents an animation turns: an offset turns nothing.
     pub(crate) fn turning_materials(&self) -> HashSet<u32> {
         let meshes = self.meshes.iter();
         let pairs = meshes.flat_map(|mesh| mesh.primitives.iter().zip(&mesh.materials));
@@ -197,7 +197,7 @@ impl Document {
         };
         let targets = self.animations.iter().flat_map(AnimationDef::targets);
         let turned = targets.filter_map(|pointed| match pointed.target {
-            Target::Material(MaterialPart::Uv(slot, _)) => {
+            Target::Material(MaterialPart::Uv(slot, UvPart::Rotation | UvPart::Scale)) => {
                 Some(pointed.number).filter(|number| turns(*number, slot))
             }
             _ => None,

@@ -432,6 +432,28 @@ fn a_required_extension_is_no_obstacle_and_curves_may_leave_the_range_of_numbers
     }
 }
 
+/// Draws the first primitive twice, once without its tangents.
+fn repeat_without_tangents(file: &mut File) {
+    let mut again = file.json["meshes"][0]["primitives"][0].clone();
+    let attributes = again["attributes"].as_object_mut().unwrap();
+    attributes.remove("TANGENT");
+    let primitives = file.json["meshes"][0]["primitives"].as_array_mut();
+    primitives.unwrap().push(again);
+}
+
+#[test]
+fn a_normal_map_that_slides_needs_no_second_material() {
+    let materials = |part: &str| {
+        let pointer = format!("/materials/0/normalTexture/extensions/KHR_texture_transform/{part}");
+        let moves = MOVES.iter().copied().filter(|m| m.pointer == pointer);
+        let mut file = movable();
+        repeat_without_tangents(&mut file);
+        animate(&mut file, &moves.collect::<Vec<_>>());
+        file.load().materials.len()
+    };
+    assert_eq!(materials("offset") + 1, materials("rotation"));
+}
+
 /// Tangents of the file are taken as they are, and make no others of their material stay.
 #[test]
 fn generated_tangents_turn_beside_those_of_the_file() {
@@ -466,14 +488,6 @@ fn generated_tangents_turn_beside_those_of_the_file() {
     });
     assert!(near(&found), "{found:?}");
     // One that a node shows.
-    let found = turns(&|file| {
-        let mut both = file.json["meshes"][0]["primitives"][0].clone();
-        both["attributes"]
-            .as_object_mut()
-            .unwrap()
-            .remove("TANGENT");
-        let primitives = file.json["meshes"][0]["primitives"].as_array_mut();
-        primitives.unwrap().push(both);
-    });
+    let found = turns(&repeat_without_tangents);
     assert!(found[0] == 0.0 && near(&found[1..]), "{found:?}");
 }
