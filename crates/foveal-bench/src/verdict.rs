@@ -220,7 +220,7 @@ fn summary(report: &Report) -> String {
         ]);
     }
     let mut said = format!(
-        "{} at {}x{}, {}, whole frames, medians of {} pairs, drawn in turn by lot\n",
+        "{} at {}x{}, {}, whole frames, medians of {} rounds, drawn in turn by lot\n",
         report.header.scene, report.width, report.height, report.header.adapter.name, report.rounds
     ) + &text(&lines);
     for row in &report.rows {
