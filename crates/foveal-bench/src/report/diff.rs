@@ -86,7 +86,9 @@ impl Difference {
             }
         }
         let pairs = pairs(old, new);
-        if pairs.is_empty() {
+        let quoted = names.map(|name| format!("'{name}'"));
+        let notes = notes([old, new], [&quoted[0], &quoted[1]]);
+        if pairs.is_empty() && notes.is_empty() {
             bail!("the reports have no row in common");
         }
         let count = |change| pairs.iter().filter(|p| p.change == change).count();
@@ -100,8 +102,7 @@ impl Difference {
             );
         }
         said += &table(&pairs);
-        let quoted = names.map(|name| format!("'{name}'"));
-        for note in notes([old, new], [&quoted[0], &quoted[1]]) {
+        for note in notes {
             said += &format!("{note}\n");
         }
         let failed = failures(old, new);
@@ -207,6 +208,20 @@ mod tests {
         }
         assert!(found.page.contains("a, together (--p 1)"), "{}", found.page);
         assert_eq!((found.slower, found.failed), (0, 1));
+        // Where nothing else is left, too; a cause of several lines is one of the list.
+        let failed = json!({ "name": "a", "status": "failed", "cause": "no\nmemory", "rows": [] });
+        let old = report(&json!([measured("a", &[("x", "")])]));
+        let found = Difference::of(&old, &report(&json!([failed])), ["old.json", "new.json"]);
+        let found = found.unwrap();
+        assert_eq!(
+            found.said,
+            "failed in 'new.json': a: no memory\nonly in 'old.json': a, x\n\
+             0 times compared: 0 slower, 0 faster, 0 within the noise; \
+             1 benches failed that did not before\n"
+        );
+        assert!(found.page.contains("a: no memory"), "{}", found.page);
+        let nothing = report(&json!([]));
+        assert!(Difference::of(&nothing, &nothing, ["old.json", "new.json"]).is_err());
         // What failed before as well is no change.
         let found = Difference::of(&new, &new, ["old.json", "new.json"]).unwrap();
         assert_eq!(found.failed, 0);

@@ -22,6 +22,7 @@ pub(super) fn notes(reports: [&Value; 2], names: [&str; 2]) -> Vec<String> {
     for (report, name) in reports.into_iter().zip(names) {
         for bench in benches(report).filter(|bench| has_failed(bench)) {
             let (which, cause) = (text(&bench["name"]), text(&bench["cause"]));
+            let cause = cause.lines().collect::<Vec<_>>().join(" ");
             notes.push(format!("failed in {name}: {which}: {cause}"));
         }
     }

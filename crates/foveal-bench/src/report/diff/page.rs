@@ -38,7 +38,9 @@ pub(super) fn of(old: &Value, new: &Value, pairs: &[Pair]) -> String {
         }
         section {
             h2 { "What changed" }
-            @if changed.is_empty() {
+            @if pairs.is_empty() {
+                p { "No time can be compared." }
+            } @else if changed.is_empty() {
                 p { "No time changed beyond the noise." }
             } @else {
                 (table(&changed))
