@@ -1,6 +1,7 @@
 //! `foveal bench antialiasing`: the original method's comparison (none, MSAA, SSAA), and ours
 //! beside it.
 
+use anyhow::Context;
 use foveal::{
     Antialiasing, EdgeTest, Frame, FrameStats, Geometry, Gpu, LightAssignment, LightingModel,
     Renderer, SamplePattern, Settings,
@@ -204,6 +205,29 @@ fn reference_of(
     fitting.next().map(Some).ok_or(error)
 }
 
+/// What `draw` makes of the reference's settings; of fewer sub-samples where the device has no memory
+/// for these. `None` for 0.
+fn drawn_reference<P>(
+    base: &Settings,
+    mut samples: u32,
+    limits: &wgpu::Limits,
+    mut draw: impl FnMut(&Settings) -> anyhow::Result<P>,
+) -> anyhow::Result<Option<(u32, P)>> {
+    while let Some(settings) = reference_of(base, samples, limits)? {
+        let tried = settings.antialiasing.samples;
+        let error = match draw(&settings) {
+            Ok(drawn) => return Ok(Some((tried, drawn))),
+            Err(error) => error,
+        };
+        let side = tried.isqrt() - 1;
+        match error.downcast_ref() {
+            Some(foveal::Error::OutOfMemory { .. }) if side > 1 => samples = side * side,
+            _ => return Err(error),
+        }
+    }
+    Ok(None)
+}
+
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let subject = args.subject.open(args.point_lights)?;
@@ -229,8 +253,13 @@ fn rows(
     Subject { gpu, scene, camera }: &Subject,
     base: &Settings,
 ) -> anyhow::Result<Vec<Row>> {
+    // First: it may take more memory than all that is measured. Only its picture stays.
     let limits = gpu.device.limits();
-    let reference = reference_of(base, args.reference, &limits)?;
+    let reference = drawn_reference(base, args.reference, &limits, |settings| {
+        let mut mode = Mode::new(gpu, scene, settings)?;
+        mode.warm_up(camera)?;
+        mode.picture.context("the reference has no picture")
+    })?;
     let mut modes = modes(base)
         .iter()
         .map(|settings| Mode::new(gpu, scene, settings))
@@ -244,15 +273,6 @@ fn rows(
             modes[number].rounds.push(Times::of(&stats));
         }
     }
-    let reference = match reference {
-        Some(settings) => {
-            let mut mode = Mode::new(gpu, scene, &settings)?;
-            mode.warm_up(camera)?;
-            let samples = settings.antialiasing.samples;
-            mode.picture.map(|picture| (samples, picture))
-        }
-        None => None,
-    };
     let pictures: Vec<_> = modes.iter_mut().filter_map(|m| m.picture.take()).collect();
     Ok((modes.iter().zip(&pictures).enumerate())
         .map(|(number, (mode, picture))| {

@@ -22,6 +22,28 @@ fn the_reference_has_as_many_sub_samples_as_the_device_can_draw() {
     assert!(samples((1920, 1080), 50).is_err());
 }
 
+#[test]
+fn a_reference_that_the_device_has_no_memory_for_is_made_smaller() {
+    let base = Settings::default();
+    let drawn = |wanted, most| {
+        let limits = wgpu::Limits::default();
+        drawn_reference(&base, wanted, &limits, |settings| {
+            let samples = settings.antialiasing.samples;
+            let doing = "drawing".to_owned();
+            match samples {
+                _ if samples <= most => Ok(samples),
+                _ => Err(foveal::Error::OutOfMemory { doing }.into()),
+            }
+        })
+    };
+    assert_eq!(drawn(36, 64).unwrap(), Some((36, 36)));
+    assert_eq!(drawn(36, 20).unwrap(), Some((16, 16)));
+    assert_eq!(drawn(0, 64).unwrap(), None);
+    assert!(drawn(36, 3).is_err());
+    let fails = |_: &Settings| -> anyhow::Result<u32> { anyhow::bail!("another cause") };
+    assert!(drawn_reference(&base, 36, &wgpu::Limits::default(), fails).is_err());
+}
+
 /// The scene with slivers in place of its meshes: more surfaces in a pixel than room is made
 /// for before the first frame.
 fn in_slivers(mut scene: Scene) -> Scene {
