@@ -12,7 +12,7 @@ const rows = [
   ['Draws', (s) => s.draws, count, 'count'],
   ['Triangles', (s) => s.triangles, count, 'count'],
   ['Samples lit', (s) => s.shaded_samples, count, 'count'],
-  ['… by pixels', (s) => s.shaded_samples / (s.width * s.height), (v) => `${(100 * v).toFixed(1)} %`],
+  ['… by pixels', (s) => s.shaded_samples / s.drawn_pixels, (v) => `${(100 * v).toFixed(1)} %`],
   ['Targets', (s) => s.target_bytes / 2 ** 20, (v) => `${v.toFixed(0)} MiB`],
 ];
 

@@ -111,6 +111,8 @@ test('both eyes in one submission give the picture of two passes, with half the 
     const [left, right] = [await picture(page, false), await picture(page, true)];
     const { reference, chosen } = await costs(page);
     assert.equal(reference.draws, 2 * chosen.draws);
+    // Every pixel of each eye is lit once, however many of them are shown.
+    assert.equal(chosen.shaded_samples, chosen.drawn_pixels);
     assert.match(chosen.stereo.mode, /^instanced/);
     assert.ok(difference(left, right) < 0.01, `${show}: ${difference(left, right)}`);
     assert.equal(await page.locator('.message').count(), 0, await page.locator('#messages').textContent());

@@ -81,6 +81,11 @@ impl Side {
         stats.map_err(|cause| cause.to_string())
     }
 
+    /// Pixels that the last frame drew, of all eyes' pictures.
+    pub(crate) fn drawn_pixels(&self) -> u64 {
+        self.renderer.settings().drawn_pixels()
+    }
+
     /// The last frame, sRGB-encoded.
     pub(crate) fn picture(&self) -> &wgpu::TextureView {
         self.renderer.picture()

@@ -55,8 +55,8 @@ impl Told {
 /// What a frame cost, per side that was drawn.
 #[derive(Serialize)]
 struct Cost {
-    reference: Option<FrameStats>,
-    chosen: Option<FrameStats>,
+    reference: Option<CostOfSide>,
+    chosen: Option<CostOfSide>,
     /// Whole frames and all passes of both sides compared; `None` until enough frames were drawn.
     frame: Option<Told>,
     passes: Option<Told>,
@@ -64,6 +64,23 @@ struct Cost {
     is_measured: bool,
     /// Milliseconds from the request to the canvas.
     total_ms: f64,
+}
+
+#[derive(Serialize)]
+struct CostOfSide {
+    #[serde(flatten)]
+    stats: FrameStats,
+    /// Pixels of all eyes' pictures at the size at which they are drawn.
+    drawn_pixels: u64,
+}
+
+impl CostOfSide {
+    fn new(side: &Side, stats: FrameStats) -> Self {
+        Self {
+            stats,
+            drawn_pixels: side.drawn_pixels(),
+        }
+    }
 }
 
 /// A scene, two renderers and a canvas.
@@ -260,8 +277,8 @@ impl Viewer {
             .show(&self.gpu, left.picture(), right.picture(), request.split)?;
         let is_one_alone = reference.is_none() || chosen.is_none();
         let cost = Cost {
-            reference,
-            chosen,
+            reference: reference.map(|stats| CostOfSide::new(&self.reference, stats)),
+            chosen: chosen.map(|stats| CostOfSide::new(&self.chosen, stats)),
             frame: self.turns.frame().map(Told::of),
             passes: self.turns.passes().map(Told::of),
             is_measured: is_one_alone || self.turns.is_done(),
