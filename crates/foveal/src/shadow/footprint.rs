@@ -175,10 +175,14 @@ mod tests {
                 for _ in 0..2_000 {
                     let mut place = || Vec3::new(random(), random(), random()) - 0.5;
                     let apex = 2.0 * away * place();
-                    let axes = axes_along(place().normalize());
+                    let axes = if tangent == 1.0 {
+                        cube_axes(3)
+                    } else {
+                        axes_along(place().normalize())
+                    };
                     let lamp = Volume::Pyramid {
                         apex,
-                        axes: if tangent == 1.0 { cube_axes(3) } else { axes },
+                        axes,
                         tangent,
                         range: 8.0,
                         near: 0.01,
@@ -189,16 +193,19 @@ mod tests {
                         radius: 8.0,
                         span: [axes[2].dot(apex) - 50.0, axes[2].dot(apex) + 50.0],
                     };
-                    let at = apex + place() * 4.0;
-                    let half = 0.2 * (place() + 0.5);
+                    let (aside, distance) = (place(), 0.05 + 4.0 * (place().x + 0.5));
+                    let [x, y, z] = axes.map(|axis| axis * distance);
+                    let at = apex + z + (x * aside.x + y * aside.y) * (2.2 * tangent);
+                    let half = 0.1 * tangent * distance * (place() + 0.5);
                     let b = Aabb::new(at - half, at + half);
                     let corner = Vec3::select(place().cmplt(Vec3::ZERO), b.min, b.max);
                     for volume in [lamp, sun] {
                         let clip = volume.clip_from_world(side) * corner.extend(1.0);
-                        if clip.w < 0.02 {
+                        let texel = (0.5 + 0.5 * clip.truncate().truncate() / clip.w) * side;
+                        let is_in_tile = texel.min_element() > 0.0 && texel.max_element() < side;
+                        if clip.w < 0.02 || !is_in_tile {
                             continue;
                         }
-                        let texel = (0.5 + 0.5 * clip.truncate().truncate() / clip.w) * side;
                         let held = Footprint::new(&volume, &b, side).map(|f| f.grown(1.0));
                         assert!(
                             held.is_some_and(|f| {
