@@ -96,6 +96,15 @@ pub(crate) fn picture(renderer: &Renderer) -> Vec<u8> {
     pollster::block_on(renderer.read_picture()).expect("read-back works")
 }
 
+/// Numbers from 0 up to 1, the same for the same seed.
+pub(crate) fn random(seed: u32) -> impl FnMut() -> f32 {
+    let mut state = seed;
+    move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 24) as f32
+    }
+}
+
 /// Settings for a small target.
 pub(crate) fn small(width: u32, height: u32) -> Settings {
     Settings::default().with(|s| {

@@ -158,6 +158,7 @@ fn clip(polygon: &[Vec3], within: impl Fn(Vec3) -> f32, to: &mut Vec<Vec3>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::random;
     use foveal_scene::Vertex;
 
     fn mesh(places: &[Vec3]) -> Mesh {
@@ -177,17 +178,9 @@ mod tests {
         parts(mesh, grid, &mut 1e9)
     }
 
-    fn random() -> impl FnMut() -> f32 {
-        let mut state = 5u32;
-        move || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / (1 << 24) as f32
-        }
-    }
-
     #[test]
     fn every_place_of_a_triangle_lies_in_a_part() {
-        let mut random = random();
+        let mut random = random(5);
         for grid in [1, 3, 8, 64] {
             for _ in 0..20 {
                 let mut place = || Vec3::new(random() * 9.0 - 4.0, random(), random() * 3.0);

@@ -159,15 +159,12 @@ pub(super) fn texel_at(volume: &Volume, side: f32, distance: f32) -> f32 {
 mod tests {
     use super::*;
     use crate::shadow::volume::{axes_along, cube_axes};
+    use crate::testing::random;
 
     /// Corners of boxes as the device draws them, from the origin to ten kilometres away.
     #[test]
     fn a_footprint_holds_what_is_drawn_however_far_the_origin_is() {
-        let mut state = 5_u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / (1 << 24) as f32
-        };
+        let mut random = random(5);
         let side = 512.0;
         let mut compared = 0;
         for away in [0.0, 300.0, 1e3, 1e4] {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use foveal_scene::Aabb;
 
 use super::atlas::{Atlas, Tile};
-use super::footprint::{Footprint, texel_at};
+use super::footprint::texel_at;
 use super::mask::Mask;
 use super::patch::Patch;
 use super::plan::Wanted;
@@ -47,13 +47,35 @@ impl Kept {
         self.disturbed_in = Some(frame);
     }
 
-    /// The texels that a box may cover; `None` where there are none.
-    pub(super) fn patch_of(&self, b: &Aabb) -> Option<Patch> {
-        let side = self.tile.side();
-        if !self.volume.meets(b, side as f32) {
-            return None;
+    /// What it holds is wrong in a patch too, from the frame after this one on.
+    fn disturb_patch(&mut self, frame: u64, patch: Patch) {
+        let all = if self.is_drawn {
+            Some(patch)
+        } else {
+            self.wrong.map(|wrong| wrong.union(patch))
+        };
+        let wrong = all.filter(|all| !all.is_most_of(self.tile.side()));
+        if self.is_drawn {
+            self.disturb(frame, wrong);
+        } else {
+            self.wrong = wrong;
         }
-        Patch::of(Footprint::new(&self.volume, b, side as f32)?, side)
+    }
+
+    /// A patch around what the tile sees of boxes, or around most of the tile; `None` where it sees
+    /// nothing of them.
+    fn patch_around(&self, boxes: &[Aabb]) -> Option<Patch> {
+        let side = self.tile.side();
+        let met = boxes.iter().filter(|b| self.volume.meets(b, side as f32));
+        let mut all: Option<Patch> = None;
+        for patch in met.filter_map(|b| Patch::of_box(&self.volume, b, side)) {
+            let both = all.map_or(patch, |all| all.union(patch));
+            all = Some(both);
+            if both.is_most_of(side) {
+                break;
+            }
+        }
+        all
     }
 }
 
@@ -256,36 +278,19 @@ impl KeptTiles {
     /// Tiles that see any of these boxes must be drawn again where they see them, for what they
     /// were drawn for at least.
     pub(super) fn disturb(&mut self, boxes: &[Aabb]) {
-        for kept in self.tiles.values_mut() {
-            if !kept.is_drawn && kept.wrong.is_none() {
-                continue;
-            }
-            let mut wrong: Option<Patch> = None;
-            for patch in boxes.iter().filter_map(|b| kept.patch_of(b)) {
-                let all = wrong.map_or(patch, |wrong| wrong.union(patch));
-                wrong = Some(all);
-                if all.is_most_of(kept.tile.side()) {
-                    break;
-                }
-            }
-            let Some(wrong) = wrong else {
-                continue;
-            };
-            let wrong = Some(wrong).filter(|wrong| !wrong.is_most_of(kept.tile.side()));
-            if kept.is_drawn {
-                kept.disturb(self.frame, wrong);
-            } else {
-                let both = kept.wrong.zip(wrong).map(|(a, b)| a.union(b));
-                kept.wrong = both.filter(|both| !both.is_most_of(kept.tile.side()));
+        let tiles = self.tiles.values_mut();
+        for kept in tiles.filter(|kept| kept.is_drawn || kept.wrong.is_some()) {
+            if let Some(patch) = kept.patch_around(boxes) {
+                kept.disturb_patch(self.frame, patch);
             }
         }
     }
 
-    /// All of every tile is wrong.
+    /// All of the tiles in which something is wrong is wrong, or of every tile.
     #[cfg(test)]
-    pub(super) fn spoil(&mut self) {
+    pub(super) fn spoil(&mut self, every: bool) {
         for kept in self.tiles.values_mut() {
-            kept.is_drawn = false;
+            kept.is_drawn &= !every;
             kept.wrong = None;
         }
     }

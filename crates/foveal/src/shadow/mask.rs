@@ -113,6 +113,7 @@ impl Mask {
 mod tests {
     use super::*;
     use crate::shadow::volume::{axes_along, cube_axes};
+    use crate::testing::random;
     use glam::Vec3;
 
     fn around(at: Vec3, half: f32) -> Aabb {
@@ -170,11 +171,7 @@ mod tests {
     /// the mask reaches.
     #[test]
     fn every_lookup_in_a_receiver_lies_within_its_mask() {
-        let mut state = 7u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / (1 << 24) as f32
-        };
+        let mut random = random(7);
         for (tile, filter) in [
             (side_of_a_cube(), 3.0),
             (column(), 3.0),
@@ -239,11 +236,7 @@ mod tests {
     /// texel that a lookup there reads.
     #[test]
     fn every_caster_that_a_lookup_may_find_is_shown() {
-        let mut state = 11u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / (1 << 24) as f32
-        };
+        let mut random = random(11);
         let mut shown = 0;
         for tile in [side_of_a_cube(), column()] {
             for side in [16.0, 64.0, 512.0] {

@@ -99,14 +99,11 @@ mod tests {
 
     use super::*;
     use crate::shadow::volume::cube_axes;
+    use crate::testing::random;
 
     #[test]
     fn whatever_a_tile_holds_and_the_eye_sees_lies_in_its_part_of_the_picture() {
-        let mut state = 5u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / (1 << 24) as f32
-        };
+        let mut random = random(5);
         let (mut seen, mut small) = (0, 0);
         for trial in 0..400 {
             let mut place = |size: f32| size * (Vec3::new(random(), random(), random()) - 0.5);

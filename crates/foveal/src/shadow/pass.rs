@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::atlas::Tile;
 use super::patch::Patch;
+use super::volume::Volume;
 use crate::geometry::{
     DrawList, Faces, PipelineKey, PipelineRecipe, Pipelines, Shape, VertexSource,
 };
@@ -20,13 +21,29 @@ const HAS_UV_MAP: u32 = 128;
 /// A tile to draw, and what it shows.
 #[derive(Clone, Debug)]
 pub(super) struct TileDraw {
-    pub(super) tile: Tile,
-    /// What of it is drawn; `None` for all of it.
-    pub(super) patch: Option<Patch>,
-    pub(super) clip_from_world: glam::Mat4,
+    tile: Tile,
+    clip_from_world: glam::Mat4,
     pub(super) casters: DrawList,
-    /// Whether nothing is there yet; otherwise these casters are added to those that it holds.
-    pub(super) is_new: bool,
+    /// What is emptied before, and drawn alone; `None` where the casters are added to all that the
+    /// tile holds.
+    pub(super) emptied: Option<Patch>,
+}
+
+impl TileDraw {
+    /// Draws these instances.
+    pub(super) fn new(
+        scene: &SceneOnGpu,
+        (tile, volume): (Tile, &Volume),
+        casters: Vec<u32>,
+        emptied: Option<Patch>,
+    ) -> Self {
+        Self {
+            tile,
+            clip_from_world: volume.clip_from_world(tile.side() as f32),
+            casters: DrawList::of_casters(scene, casters.into_iter(), CasterPass::key),
+            emptied,
+        }
+    }
 }
 
 /// Mirrors `TileView` in `shadow/caster.wgsl`.
@@ -100,7 +117,7 @@ impl CasterPass {
 
     /// The pipeline of what casts a shadow, whichever side of it the light sees; of a material only
     /// what cuts holes matters.
-    pub(super) fn key(class: u32, masked: bool) -> PipelineKey {
+    fn key(class: u32, masked: bool) -> PipelineKey {
         PipelineKey {
             class: if masked {
                 class & (HAS_BASE_COLOR | HAS_UV_MAP)
@@ -154,10 +171,10 @@ impl CasterPass {
             let Tile { x, y, .. } = draw.tile;
             let side = draw.tile.side();
             pass.set_viewport(x as f32, y as f32, side as f32, side as f32, 0.0, 1.0);
-            let Patch { low, high } = draw.patch.unwrap_or(Patch::whole(side));
+            let Patch { low, high } = draw.emptied.unwrap_or(Patch::whole(side));
             let [width, height] = [0, 1].map(|i| high[i] - low[i]);
             pass.set_scissor_rect(x + low[0], y + low[1], width, height);
-            if draw.is_new {
+            if draw.emptied.is_some() {
                 pass.set_pipeline(&self.clear);
                 pass.draw(0..3, 0..1);
             }

@@ -1,8 +1,10 @@
 //! Patches of a tile: what is drawn again where something has moved in it.
 
+use foveal_scene::Aabb;
 use glam::Vec2;
 
 use super::footprint::Footprint;
+use super::volume::Volume;
 
 /// Texels around a footprint that rounding may reach.
 const MARGIN: f32 = 1.0;
@@ -26,7 +28,7 @@ impl Patch {
 
     /// The texels of a tile of `side` texels that what lies in a footprint may cover; `None` where
     /// there are none.
-    pub(super) fn of(footprint: Footprint, side: u32) -> Option<Self> {
+    fn of(footprint: Footprint, side: u32) -> Option<Self> {
         let around = footprint.grown(MARGIN);
         let down = |at: Vec2| Vec2::new(at.x, side as f32 - at.y);
         let (a, b) = (down(around.low), down(around.high));
@@ -36,6 +38,12 @@ impl Patch {
             low: low.to_array(),
             high: high.to_array(),
         })
+    }
+
+    /// The texels of a tile of `side` texels that what lies in a box may cover; `None` where there
+    /// are none.
+    pub(super) fn of_box(volume: &Volume, b: &Aabb, side: u32) -> Option<Self> {
+        Self::of(Footprint::new(volume, b, side as f32)?, side)
     }
 
     pub(super) fn union(self, other: Self) -> Self {

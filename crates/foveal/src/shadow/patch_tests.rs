@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use foveal_generate as generate;
 use glam::Vec3;
 
 use super::atlas::Tile;
@@ -46,7 +47,7 @@ fn films(culling: Culling, compare: impl Fn(&Film, &Film)) -> Vec<ShadowStats> {
             object.visible = !object.visible;
         }
         let camera = walked(&scene, step);
-        whole.renderer.shadows_mut().draw_again();
+        whole.renderer.shadows_mut().draw_whole(true);
         for film in [&mut patched, &mut whole] {
             pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
             stats.push(film.draw(&camera).shadows.unwrap());
@@ -79,4 +80,56 @@ fn patches_of_tiles_give_the_picture_that_whole_tiles_give() {
     });
     assert!(stats[1..].iter().any(|s| s.casters_beside > 0));
     assert!(stats[1..].iter().any(|s| s.casters_unneeded > 0));
+}
+
+/// The figures of docs/decisions/0257-patches-of-tiles.md.
+#[test]
+#[ignore = "takes a minute, and measures"]
+fn a_thing_beside_a_lantern_takes_whole_tiles_or_patches() {
+    let scene = generate::by_name("demo").unwrap();
+    let camera = &scene.cameras[0];
+    let nearest = |at: Vec3, places: &mut dyn Iterator<Item = (usize, Vec3)>| {
+        let distance = |place: &(usize, Vec3)| place.1.distance(at);
+        places.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    };
+    let [_, _, back, eye] = [0, 1, 2, 3].map(|i| camera.world_from_view.col(i).truncate());
+    let lamps = scene.lights.iter().filter(|light| light.range_m.is_some());
+    let mut lamps = lamps.map(|light| light.position).enumerate();
+    let (_, lamp) = nearest(eye - 6.0 * back, &mut lamps).unwrap();
+    let small = scene.instances.iter().enumerate().filter(|(_, instance)| {
+        let size = instance.bounds.size().max_element();
+        size > 0.2 && size < 1.0
+    });
+    let mut small = small.map(|(i, instance)| (i, instance.bounds.center()));
+    let (thing, _) = nearest(lamp - Vec3::Y, &mut small).unwrap();
+    for whole in [true, false, true, false] {
+        let mut scene = scene.clone();
+        let settings = settings(Culling::Occlusion).with(|s| {
+            (s.picture.width, s.picture.height) = (480, 270);
+            s.lighting.shadow_atlas = 4096;
+        });
+        let mut film = Film::new(&scene, &settings);
+        film.draw(camera);
+        let mut frame = |angle: f32| {
+            let by = 0.05 * Vec3::new(angle.sin(), 0.0, angle.cos());
+            shift(&mut scene, [thing].into_iter(), by);
+            pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
+            if whole {
+                film.renderer.shadows_mut().draw_whole(false);
+            }
+            let stats = film.draw(camera);
+            let pass = stats.gpu_ms.iter().find(|pass| pass.name == "shadows");
+            (pass.map_or(0.0, |pass| pass.ms), stats.shadows.unwrap())
+        };
+        let mut frames: Vec<_> = (0..14).map(|i| frame(i as f32)).collect();
+        frames.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (ms, s) = &frames[7];
+        println!(
+            "{}: {ms:.1} ms, {} tiles, {} casters, {} triangles",
+            if whole { "whole tiles" } else { "patches" },
+            s.tiles_drawn,
+            s.casters,
+            s.triangles
+        );
+    }
 }

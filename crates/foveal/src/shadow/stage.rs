@@ -10,10 +10,10 @@ use super::hidden::HiddenCasters;
 use super::kept::{KeptTiles, Received, Urgency};
 use super::near::{Near, NearLight, Seen};
 use super::pass::{CasterPass, TileDraw};
+use super::patch::Patch;
 use super::plan::{Plan, TILES_PER_LIGHT, ViewOfPlan, Wanted};
 use super::receivers::{Reach, Receivers, SeenCells, SeenSince};
 use super::records::{LookupSettings, Row, rows};
-use crate::geometry::DrawList;
 use crate::gpu::{Gpu, Table};
 use crate::rate::FinestRate;
 use crate::recorder::Recorder;
@@ -62,7 +62,6 @@ struct Counts {
     hidden: u64,
     unneeded: u64,
     beside: u64,
-    triangles: u64,
     waiting: u64,
     longest_wait: u64,
 }
@@ -255,12 +254,12 @@ impl ShadowStage {
         shown.map(|(tile, _)| tile).collect()
     }
 
-    /// The next frame draws every tile, in its place.
+    /// The next frame draws whole tiles where it would draw patches; all tiles where `every`.
     #[cfg(test)]
-    pub(super) fn draw_again(&mut self) {
+    pub(super) fn draw_whole(&mut self, every: bool) {
         let drawing = self.drawing.as_mut().unwrap();
         drawing.settled = None;
-        drawing.kept.spoil();
+        drawing.kept.spoil(every);
     }
 
     /// What shaders were told.
@@ -372,15 +371,8 @@ impl Drawing {
                     kept.left_out.iter().partition(|&&i| shown(i));
                 kept.left_out = still;
                 if !shown.is_empty() {
-                    let casters = DrawList::of_casters(scene, shown.into_iter(), CasterPass::key);
-                    self.counts.triangles += casters.triangles;
-                    self.draws.push(TileDraw {
-                        tile: kept.tile,
-                        patch: None,
-                        clip_from_world: volume.clip_from_world(side),
-                        casters,
-                        is_new: false,
-                    });
+                    let tile = (kept.tile, volume);
+                    self.draws.push(TileDraw::new(scene, tile, shown, None));
                 }
             }
         }
@@ -402,10 +394,11 @@ impl Drawing {
         let (mut left_out, mut late) = (Vec::new(), Vec::new());
         let patch = kept.wrong;
         if let Some(patch) = patch {
+            let covers = |i: u32| Patch::of_box(volume, bounds(i), tile.side());
             // What the tile was drawn without is so still, or else is drawn in all of it.
             left_out = std::mem::take(&mut kept.left_out);
             left_out.retain(|i| casters.binary_search(i).is_ok());
-            casters.retain(|&i| kept.patch_of(bounds(i)).is_some_and(|p| p.meets(patch)));
+            casters.retain(|&i| covers(i).is_some_and(|covered| covered.meets(patch)));
         }
         // A light that moves asks anew of all that is seen, for one frame: that takes longer than
         // drawing what it would leave out.
@@ -441,23 +434,13 @@ impl Drawing {
             let others = casters.len() + late.len() + left_out.len();
             self.counts.beside += (in_reach - others) as u64;
         }
-        let clip_from_world = volume.clip_from_world(side);
-        let mut triangles = 0;
-        for (instances, is_new) in [(casters, true), (late, false)] {
-            if instances.is_empty() && !is_new {
-                continue;
-            }
-            let casters = DrawList::of_casters(scene, instances.into_iter(), CasterPass::key);
-            triangles += casters.triangles;
-            self.draws.push(TileDraw {
-                tile,
-                patch: patch.filter(|_| is_new),
-                clip_from_world,
-                casters,
-                is_new,
-            });
+        let emptied = patch.unwrap_or(Patch::whole(tile.side()));
+        let mut draws = vec![TileDraw::new(scene, (tile, volume), casters, Some(emptied))];
+        if !late.is_empty() {
+            draws.push(TileDraw::new(scene, (tile, volume), late, None));
         }
-        self.counts.triangles += triangles;
+        let triangles = draws.iter().map(|draw| draw.casters.triangles).sum();
+        self.draws.extend(draws);
         if self.kept.drawn(want, left_out) {
             self.changed.push(volume.sphere());
         }
@@ -470,14 +453,14 @@ impl Drawing {
         let casters = self.draws.iter().map(|d| d.casters.drawn.len() as u64);
         ShadowStats {
             tiles: in_use.len() as u64,
-            tiles_drawn: self.draws.iter().filter(|d| d.is_new).count() as u64,
-            tiles_completed: self.draws.iter().filter(|d| !d.is_new).count() as u64,
+            tiles_drawn: self.draws.iter().filter(|d| d.emptied.is_some()).count() as u64,
+            tiles_completed: self.draws.iter().filter(|d| d.emptied.is_none()).count() as u64,
             casters: casters.sum(),
             casters_in_reach: self.counts.in_reach,
             casters_hidden: self.counts.hidden,
             casters_unneeded: self.counts.unneeded,
             casters_beside: self.counts.beside,
-            triangles: self.counts.triangles,
+            triangles: self.draws.iter().map(|d| d.casters.triangles).sum(),
             texels: in_use.iter().map(|t| u64::from(t.side()).pow(2)).sum(),
             tiles_waiting: self.counts.waiting,
             longest_wait: self.counts.longest_wait,
