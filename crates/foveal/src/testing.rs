@@ -112,6 +112,8 @@ pub(crate) fn small(width: u32, height: u32) -> Settings {
         s.picture.height = height;
         // Tests of light that is kept turn it on.
         s.coarse.history = false;
+        // Twins count one bounce; tests of further ones turn them on.
+        s.lighting.multiple_scattering = false;
         // What tests look at does not hang on times.
         s.rate.force = true;
     })

@@ -63,6 +63,8 @@ fn flip_to(
         (s.picture.width, s.picture.height) = (width, height);
         s.picture.tone_map = ToneMap::Linear;
         s.lighting.background = Background::None;
+        // The reference counts one bounce between microfacets.
+        s.lighting.multiple_scattering = false;
     });
     let drawn = pollster::block_on(async {
         let gpu = Gpu::open(None)

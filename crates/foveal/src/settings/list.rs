@@ -91,10 +91,10 @@ settings! {
         /// Reflection model: ggx is glTF's metallic-roughness model, blinn-phong the one that
         /// the techniques' sources use.
         lighting => model: LightingModel = LightingModel::default(), "Model", Kind::choice::<LightingModel>();
-        /// Light that bounces more than once between the microfacets of rough surfaces: on gives it
-        /// back, which brightens rough metals and deepens their colour. Off: it is lost, as in glTF's
+        /// Light that bounces more than once between the microfacets of rough surfaces: on counts it,
+        /// which brightens rough metals and deepens their colour. Off: it is lost, as in glTF's
         /// own model. For the model ggx, and the environment.
-        multiple_scattering => multiple_scattering: bool = false, "Multiple scattering", Kind::Switch;
+        multiple_scattering => multiple_scattering: bool = true, "Multiple scattering", Kind::Switch;
         /// Lights that a sample evaluates: clustered takes those that reach its part of the
         /// view, brute takes all (the reference). The picture is the same.
         lights => assignment: LightAssignment = LightAssignment::default(), "Lights", Kind::choice::<LightAssignment>();
