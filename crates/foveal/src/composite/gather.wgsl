@@ -24,6 +24,12 @@ const ON_PLANE: f32 = 0.2;
 const LEAST_ALIKE: f32 = 0.005;
 // Below this sum of weights no sample speaks for a pixel.
 const LEAST_WEIGHT: f32 = 0.02;
+// Standard deviation of what the samples say of a pixel, over its luminance, from which on the
+// pixel is shaded by itself: a shadow's edge or a highlight's lies between them. Found by
+// measurement.
+const MOST_APART: f32 = 0.1;
+// Luminance, by display white, below which a difference counts as relative to this.
+const DARK_APART: f32 = 0.05;
 
 // Change of depth per texel along an axis: of the two sides of a texel the one that changes less.
 fn depth_slope(texel: vec2u, axis: u32, depth: f32) -> f32 {
@@ -47,7 +53,19 @@ struct Gathered {
     direction: vec3f,
     specular_direction: vec3f,
     spread: f32,
+    // Luminance that the pixel would show by each sample, and its square.
+    shown: f32,
+    squares: f32,
     weight: f32,
+}
+
+// Whether the samples say too different things of a pixel, or none says anything. `other`: what it
+// shows of emission and the environment.
+fn is_unsure(found: Gathered, other: vec3f) -> bool {
+    let mean = found.shown / found.weight;
+    let variance = max(found.squares / found.weight - mean * mean, 0.0);
+    let limit = MOST_APART * ((mean + luminance(other)) + DARK_APART / frame.exposure);
+    return found.weight < LEAST_WEIGHT || variance > limit * limit;
 }
 
 // How far a sample at `offset` pixels rises from the plane through the pixel, over its distance.
@@ -70,7 +88,9 @@ fn gather(texel: vec2u, own: Tile, s: Surface, v: vec3f, depth: f32) -> Gathered
     let low = vec2i(picture.low >> vec2u(own.level));
     let last = vec2i((picture.end - 1u) >> vec2u(own.level));
     let a2 = squared_alpha(s);
-    var sum = Gathered(vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0);
+    let scattered = diffuse_color(s) / PI;
+    let mirrored = environment_reflectance(s, v);
+    var sum = Gathered(vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0);
     for (var i = 0u; i < 4u; i++) {
         let step = vec2u(i & 1u, i >> 1u);
         let block = vec2u(clamp(vec2i(first) + vec2i(step), low, last));
@@ -92,6 +112,9 @@ fn gather(texel: vec2u, own: Tile, s: Surface, v: vec3f, depth: f32) -> Gathered
         sum.direction += weight * luminance(diffuse) * sampled.direction;
         sum.specular_direction += weight * luminance(mirror) * sampled.specular_direction;
         sum.spread += weight * sampled.spread;
+        let shown = luminance(scattered * diffuse + mirrored * mirror);
+        sum.shown += weight * shown;
+        sum.squares += weight * shown * shown;
         sum.weight += weight;
     }
     return sum;

@@ -58,11 +58,12 @@ fn join(@builtin(global_invocation_id) id: vec3u) {
     }
     let s = unpack_surface(load_words(gbuffer_surface, texel), position);
     let found = gather(texel, own, s, v, depth);
-    if found.weight < LEAST_WEIGHT {
+    let seen = environment_seen(pixel, view_distance(depth));
+    let other = s.emissive + ambient(s, v, seen);
+    if is_unsure(found, other) {
         unlit[atomicAdd(&counts[0], 1u)] = texel.x | (texel.y << 16u);
         return;
     }
-    let seen = environment_seen(pixel, view_distance(depth));
     let lights = (diffuse_color(s) / PI * found.diffuse + environment_reflectance(s, v) * found.specular) / found.weight;
-    textureStore(radiance, texel, vec4f(min(s.emissive + ambient(s, v, seen) + lights, vec3f(65504.0)), 1.0));
+    textureStore(radiance, texel, vec4f(min(other + lights, vec3f(65504.0)), 1.0));
 }

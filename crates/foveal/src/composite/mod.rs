@@ -18,6 +18,8 @@ pub(crate) use light_targets::LightTargets;
 pub(crate) use patch_targets::{PatchTargets, check_limits};
 
 #[cfg(test)]
+mod edges_tests;
+#[cfg(test)]
 mod light_twin;
 #[cfg(test)]
 mod tests;

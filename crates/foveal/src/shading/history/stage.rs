@@ -197,7 +197,7 @@ impl HistoryStage {
             },
             reset: u32::from(reset),
             renewal: (finer / 12.0).clamp(1.0 / 64.0, 1.0),
-            tolerance: (0.07 / finer).clamp(0.01, 1.0),
+            tolerance: (0.045 / finer).clamp(0.01, 1.0),
             change: 0.5,
             whole_round: u32::from(self.whole_round),
         }
