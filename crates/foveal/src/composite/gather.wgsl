@@ -28,8 +28,6 @@ const LEAST_WEIGHT: f32 = 0.02;
 // pixel is shaded by itself: a shadow's edge or a highlight's lies between them. Found by
 // measurement.
 const MOST_APART: f32 = 0.1;
-// Luminance, by display white, below which a difference counts as relative to this.
-const DARK_APART: f32 = 0.05;
 
 // Change of depth per texel along an axis: of the two sides of a texel the one that changes less.
 fn depth_slope(texel: vec2u, axis: u32, depth: f32) -> f32 {
@@ -53,18 +51,17 @@ struct Gathered {
     direction: vec3f,
     specular_direction: vec3f,
     spread: f32,
-    // Luminance that the pixel would show by each sample, and its square.
-    shown: f32,
+    // Squared luminance of what the surface reflects by each sample.
     squares: f32,
     weight: f32,
 }
 
-// Whether the samples say too different things of a pixel, or none says anything. `other`: what it
-// shows of emission and the environment.
-fn is_unsure(found: Gathered, other: vec3f) -> bool {
-    let mean = found.shown / found.weight;
+// Whether no sample speaks for a pixel, or what they say of it lies too far apart. `lights`: what the
+// surface reflects by all of them; `other`: what it shows of emission and the environment.
+fn is_unsure(found: Gathered, lights: vec3f, other: vec3f) -> bool {
+    let mean = luminance(lights);
     let variance = max(found.squares / found.weight - mean * mean, 0.0);
-    let limit = MOST_APART * ((mean + luminance(other)) + DARK_APART / frame.exposure);
+    let limit = MOST_APART * (mean + luminance(other) + DARK / frame.exposure);
     return found.weight < LEAST_WEIGHT || variance > limit * limit;
 }
 
@@ -77,7 +74,7 @@ fn rise(depth: f32, slope: vec2f, offset: vec2f, sample_depth: f32) -> f32 {
     return apart / (length(offset) * pixel_side + 1e-6 * there);
 }
 
-fn gather(texel: vec2u, own: Tile, s: Surface, v: vec3f, depth: f32) -> Gathered {
+fn gather(texel: vec2u, own: Tile, s: Surface, by: LightFactors, v: vec3f, depth: f32) -> Gathered {
     let slope = vec2f(depth_slope(texel, 0u, depth), depth_slope(texel, 1u, depth));
     let picture = picture_of(texel);
     let side = f32(1u << own.level);
@@ -88,9 +85,7 @@ fn gather(texel: vec2u, own: Tile, s: Surface, v: vec3f, depth: f32) -> Gathered
     let low = vec2i(picture.low >> vec2u(own.level));
     let last = vec2i((picture.end - 1u) >> vec2u(own.level));
     let a2 = squared_alpha(s);
-    let scattered = diffuse_color(s) / PI;
-    let mirrored = environment_reflectance(s, v);
-    var sum = Gathered(vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0);
+    var sum = Gathered(vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0);
     for (var i = 0u; i < 4u; i++) {
         let step = vec2u(i & 1u, i >> 1u);
         let block = vec2u(clamp(vec2i(first) + vec2i(step), low, last));
@@ -112,8 +107,7 @@ fn gather(texel: vec2u, own: Tile, s: Surface, v: vec3f, depth: f32) -> Gathered
         sum.direction += weight * luminance(diffuse) * sampled.direction;
         sum.specular_direction += weight * luminance(mirror) * sampled.specular_direction;
         sum.spread += weight * sampled.spread;
-        let shown = luminance(scattered * diffuse + mirrored * mirror);
-        sum.shown += weight * shown;
+        let shown = luminance(reflected(by, diffuse, mirror));
         sum.squares += weight * shown * shown;
         sum.weight += weight;
     }

@@ -57,13 +57,14 @@ fn join(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let s = unpack_surface(load_words(gbuffer_surface, texel), position);
-    let found = gather(texel, own, s, v, depth);
+    let by = light_factors(s, v);
+    let found = gather(texel, own, s, by, v, depth);
     let seen = environment_seen(pixel, view_distance(depth));
+    let lights = reflected(by, found.diffuse, found.specular) / found.weight;
     let other = s.emissive + ambient(s, v, seen);
-    if is_unsure(found, other) {
+    if is_unsure(found, lights, other) {
         unlit[atomicAdd(&counts[0], 1u)] = texel.x | (texel.y << 16u);
         return;
     }
-    let lights = (diffuse_color(s) / PI * found.diffuse + environment_reflectance(s, v) * found.specular) / found.weight;
     textureStore(radiance, texel, vec4f(min(other + lights, vec3f(65504.0)), 1.0));
 }

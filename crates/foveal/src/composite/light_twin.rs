@@ -24,7 +24,7 @@ const ON_PLANE: f32 = 0.2;
 const LEAST_ALIKE: f32 = 0.005;
 const LEAST_WEIGHT: f32 = 0.02;
 const MOST_APART: f32 = 0.1;
-const DARK_APART: f32 = 0.05;
+const DARK: f32 = 0.05;
 
 /// As in `shading/coarse/light.wgsl`.
 const LIGHT_UNIT: f32 = 16.0;
@@ -231,7 +231,7 @@ impl<'a> Inputs<'a> {
             .camera
             .clip_from_view(self.size.x as f32 / self.size.y as f32);
         let (mut diffuse, mut specular, mut sum) = (Vec3::ZERO, Vec3::ZERO, 0.0);
-        let (mut mean, mut squares) = (0.0, 0.0);
+        let mut squares = 0.0;
         let scattered = (1.0 - s.metallic) * s.base_color / std::f32::consts::PI;
         let mirrored = environment_reflectance(&s, v);
         for step in [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE] {
@@ -267,16 +267,14 @@ impl<'a> Inputs<'a> {
             let shown = luminance(scattered * here + mirrored * mirror);
             diffuse += weight * here;
             specular += weight * mirror;
-            mean += weight * shown;
             squares += weight * shown * shown;
             sum += weight;
         }
         let other = s.emissive + ambient(self.scene, &s, v);
         let lamps = (scattered * diffuse + mirrored * specular) / sum;
-        let variance = (squares / sum - (mean / sum).powi(2)).max(0.0);
-        let lit = mean / sum
-            + luminance(other)
-            + DARK_APART / self.settings.picture.exposure_stops.exp2();
+        let mean = luminance(lamps);
+        let variance = (squares / sum - mean * mean).max(0.0);
+        let lit = mean + luminance(other) + DARK / self.settings.picture.exposure_stops.exp2();
         let apart = variance.sqrt() / lit;
         Joined {
             radiance: (sum >= LEAST_WEIGHT && apart <= MOST_APART).then_some(other + lamps),

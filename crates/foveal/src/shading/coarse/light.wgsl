@@ -13,6 +13,9 @@
 // of light on another.
 const LEAST_COSINE: f32 = 0.1;
 
+// Luminance, by display white, below which a difference counts as relative to this.
+const DARK: f32 = 0.05;
+
 // Light is packed in this unit: daylight of 100,000 lux is beyond what a shared exponent holds.
 const LIGHT_UNIT: f32 = 16.0;
 
@@ -28,6 +31,21 @@ struct SampleLight {
     spread: f32,
     // The sample's mean normal, world space.
     normal: vec3f,
+}
+
+// What a surface makes of light that reaches it: its factors of scattered and of mirrored light.
+struct LightFactors {
+    scattered: vec3f,
+    mirrored: vec3f,
+}
+
+fn light_factors(s: Surface, v: vec3f) -> LightFactors {
+    return LightFactors(diffuse_color(s) / PI, environment_reflectance(s, v));
+}
+
+// `mirror`: specular light by `highlight`.
+fn reflected(by: LightFactors, diffuse: vec3f, mirror: vec3f) -> vec3f {
+    return by.scattered * diffuse + by.mirrored * mirror;
 }
 
 // How much of a light's light a surface mirrors, for a normal and a squared alpha.

@@ -49,17 +49,18 @@ fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     let position = world_position(pixel, view_distance(depth));
     let v = direction_to_eye(view_at(pixel), position);
     let s = unpack_surface(load_words(gbuffer_surface, texel), position);
-    let found = gather(texel, tile_at(texel), s, v, depth);
+    let by = light_factors(s, v);
+    let found = gather(texel, tile_at(texel), s, by, v, depth);
+    let diffuse = found.diffuse / found.weight;
+    let mirror = found.specular / found.weight;
+    let lights = reflected(by, diffuse, mirror);
     let seen = environment_seen(pixel, view_distance(depth));
     let other = s.emissive + ambient(s, v, seen);
-    if is_unsure(found, other) {
+    if is_unsure(found, lights, other) {
         unlit[atomicAdd(&listed[UNLIT].count, 1u)] = vec2u(sample_entry(texel, 0u), 0u);
         textureStore(gathered, texel, vec4u(0u));
         return;
     }
-    let diffuse = found.diffuse / found.weight;
-    let mirror = found.specular / found.weight;
-    let lights = diffuse_color(s) / PI * diffuse + environment_reflectance(s, v) * mirror;
     textureStore(radiance, texel, vec4f(min(other + lights, vec3f(65504.0)), 1.0));
     // As light from one direction each, which gives the same on this surface.
     let direction = unit_or(found.direction, s.normal);

@@ -170,7 +170,7 @@ fn remember(before: vec2f, texel: vec2u, picture: Picture, expected: Expected, p
 fn radiance_of(light: SampleLight, s: Surface, v: vec3f, reaching: f32) -> vec3f {
     let diffuse = light.diffuse * max(dot(s.normal, light.direction), LEAST_COSINE);
     let mirror = light.specular * highlight(s.normal, v, light.specular_direction, squared_alpha(s) + light.spread);
-    let lamps = diffuse_color(s) / PI * diffuse + environment_reflectance(s, v) * mirror;
+    let lamps = reflected(light_factors(s, v), diffuse, mirror);
     return min(s.emissive + ambient(s, v, reaching) + lamps, vec3f(65504.0));
 }
 

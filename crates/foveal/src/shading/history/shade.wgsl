@@ -1,6 +1,7 @@
 // Shades the samples of a list, and measures by how much they differ from what was expected.
 
 #import shading/coarse/block_light.wgsl
+#import shading/coarse/light.wgsl
 #import shading/history/measured.wgsl
 #import shading/history/layout.wgsl
 #import shared/frame.wgsl
@@ -11,6 +12,14 @@
 @group(2) @binding(2) var light: texture_storage_2d<rgba32uint, write>;
 @group(2) @binding(3) var radiance: texture_storage_2d<rgba16float, write>;
 @group(2) @binding(4) var<storage, read_write> measured: array<Measured>;
+
+fn measure(tile: u32, found: f32, expected: f32, is_own: bool) {
+    let error = bitcast<u32>(abs(found - expected) / (max(found, expected) + DARK));
+    atomicMax(&measured[tile].error, error);
+    if is_own {
+        atomicMax(&measured[tile].change, error);
+    }
+}
 
 @compute @workgroup_size(64)
 fn shade_samples(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {

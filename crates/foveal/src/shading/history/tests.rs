@@ -229,21 +229,29 @@ fn a_lamp_that_goes_out_leaves_nothing_behind() {
     assert!(left <= 1.1 * anew + 0.02 * gone, "{left} {anew}");
 }
 
-#[test]
-fn a_cut_remembers_nothing() {
+/// Errors of the picture after a cut to a view that is turned so far, and of a new renderer's there.
+fn after_a_cut(radians: f32) -> (f64, f64) {
     let scene = scene();
     let camera = &scene.cameras[0];
     let mut film = Film::new(&scene, &kept());
     for frame in 0..3 {
         film.draw(&shifted(camera, 0.02 * frame as f32));
     }
-    let elsewhere = turned(&shifted(camera, 3.0), 1.0);
+    let elsewhere = turned(&shifted(camera, 3.0), radians);
     film.draw(&elsewhere);
     let full = full(&scene, &elsewhere, &kept());
     let anew = error(&anew(&scene, &elsewhere, &kept()), &full);
-    let left = error(&seen(&film.renderer), &full);
-    // What both views show is known by whole pixels of the other one.
-    assert!(left <= 1.6 * anew, "{left} {anew}");
+    (error(&seen(&film.renderer), &full), anew)
+}
+
+#[test]
+fn a_cut_remembers_nothing() {
+    let (left, anew) = after_a_cut(2.5);
+    assert!(left <= 1.001 * anew, "{left} {anew}");
+    // Here both views show some of the scene. 0.0123 is a new renderer's error where it interpolates
+    // the samples that disagree, too: what is kept may be as far off.
+    let (left, anew) = after_a_cut(1.0);
+    assert!(left <= 1.25 * anew.max(0.0123), "{left} {anew}");
 }
 
 #[test]
