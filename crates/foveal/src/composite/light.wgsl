@@ -5,6 +5,7 @@
 
 #import composite/gather.wgsl
 #import composite/tiling.wgsl
+#import shading/coarse/light.wgsl
 #import shared/blocks.wgsl
 #import shared/frame.wgsl
 #import shared/layers.wgsl
