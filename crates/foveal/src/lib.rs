@@ -16,6 +16,7 @@ mod composite;
 mod culling;
 mod environment;
 mod error;
+mod every_pixel;
 mod formats;
 mod forward;
 mod frame;

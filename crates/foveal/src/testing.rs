@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use foveal_scene::{Aabb, Camera, Instance, Material, Mesh, Object, Scene};
 use glam::Mat4;
 
-use crate::gpu::read_texture;
+use crate::gpu::{MipChain, read_level, read_texture};
 use crate::{Frame, FrameStats, Gpu, Renderer, Settings};
 
 /// One device for all tests of the process.
@@ -77,6 +77,15 @@ pub(crate) fn rendered_on(
 pub(crate) fn texels<T: bytemuck::Pod>(view: &wgpu::TextureView) -> Vec<T> {
     let bytes = pollster::block_on(read_texture(gpu(), view.texture())).expect("read-back works");
     bytemuck::pod_collect_to_vec(&bytes)
+}
+
+/// The cells of a level of a rate map, row by row, whichever kind of pass wrote them.
+pub(crate) fn rate_cells(chain: &MipChain, level: u32) -> Vec<u8> {
+    let read = read_level(gpu(), &chain.texture, level - 1, chain.blocks(level));
+    let bytes = pollster::block_on(read).expect("read-back works");
+    // The lowest byte comes first.
+    let size = chain.texture.format().block_copy_size(None).unwrap_or(1);
+    bytes.into_iter().step_by(size as usize).collect()
 }
 
 /// A half-precision float's value.

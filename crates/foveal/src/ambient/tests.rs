@@ -7,7 +7,9 @@ use glam::{Mat4, UVec2, Vec3};
 
 use super::OcclusionUniform;
 use super::twin::Twin;
-use crate::testing::{Film, f32_of_half, picture, rendered, rounds_alike, shifted, small, texels};
+use crate::testing::{
+    Film, f32_of_half, picture, rate_cells, rendered, rounds_alike, shifted, small, texels,
+};
 use crate::{
     AmbientOcclusion, Antialiasing, Composite, EnvironmentSource, Geometry, Renderer, Settings,
     Shading, Stereo,
@@ -115,7 +117,7 @@ fn levels(renderer: &Renderer) -> impl Fn(UVec2) -> u32 {
     let coarse = renderer.targets().coarse.as_ref();
     let (across, cells) = coarse.map_or((1, Vec::new()), |coarse| {
         let owner = &coarse.rate.owner;
-        (owner.texture.width(), texels::<u8>(&owner.whole))
+        (owner.blocks(1).0, rate_cells(owner, 1))
     });
     move |at: UVec2| {
         let cell = cells.get((at.y / 2 * across + at.x / 2) as usize);

@@ -6,7 +6,7 @@ use foveal_scene::{Camera, Projection, Scene};
 use glam::Vec3;
 
 use super::twin::{SampleTexels, resolve};
-use crate::testing::{f32_of_half, picture, rendered, small, texels};
+use crate::testing::{f32_of_half, picture, rate_cells, rendered, small, texels};
 use crate::{Antialiasing, EdgeTest, Geometry, Renderer, SamplePattern, Settings};
 
 const WIDTH: u32 = 41;
@@ -363,8 +363,8 @@ fn assert_fine_where_the_level_is_0(antialiased: &Settings, coarse: &Settings) {
     let stats = both.redraw(&scene.cameras[0]);
     let antialiased = radiance(&draw(antialiased));
     let owners = &both.targets().coarse.as_ref().expect("coarse").rate.owner;
-    let across = owners.texture.width();
-    let levels: Vec<u8> = texels(&owners.whole);
+    let across = owners.blocks(1).0;
+    let levels = rate_cells(owners, 1);
     let (mut fine, mut kept) = (0, 0);
     let mut evaluations = stats.coarse.expect("coarse").shaded_samples();
     let tally = tally(&both);

@@ -13,7 +13,7 @@ use crate::shading::twin::{
     squared_alpha, to_eye, unit_from_square, unpack_shared_exponent, unpack_surface,
 };
 
-use crate::testing::{f32_of_half, gpu, rendered, small, texels};
+use crate::testing::{f32_of_half, gpu, rate_cells, rendered, small, texels};
 use crate::{CoarseSample, Composite, RateSource, RefineEdges, Renderer, Settings, Shading};
 
 /// The constants of `light.wgsl`, here and in `shading/coarse`.
@@ -92,7 +92,6 @@ impl<'a> Inputs<'a> {
         let read = |texture: &wgpu::Texture, mip, size| {
             pollster::block_on(read_level(gpu(), texture, mip, size)).unwrap()
         };
-        let owner = &coarse.rate.owner;
         let (samples, light) = (&coarse.samples, &coarse.light.as_ref().unwrap().samples);
         let settings = renderer.settings();
         Self {
@@ -103,7 +102,7 @@ impl<'a> Inputs<'a> {
             lights: renderer.lights().1,
             surface: texels(&targets.gbuffer.surface_view),
             depth: texels(&targets.gbuffer.depth_view),
-            owner: read(&owner.texture, 0, owner.blocks(1)),
+            owner: rate_cells(&coarse.rate.owner, 1),
             samples: (samples.range())
                 .map(|level| {
                     let bytes = read(&samples.texture, level, samples.blocks(level));

@@ -8,7 +8,7 @@ use glam::{IVec2, UVec2, Vec2, Vec3};
 use crate::gpu::read_level;
 use crate::shading::sample_texel;
 use crate::shading::twin::{normal_of_depth, position_at, unit_from_octahedral};
-use crate::testing::{f32_of_half, gpu, rendered, small, texels};
+use crate::testing::{f32_of_half, gpu, rate_cells, rendered, small, texels};
 use crate::{CoarseSample, Composite, Frame, Geometry, RateSource, RefineEdges, Renderer, Shading};
 
 /// Bits of a rate map's cell.
@@ -77,7 +77,6 @@ impl Inputs {
         let read = |texture: &wgpu::Texture, mip, size| {
             pollster::block_on(read_level(gpu(), texture, mip, size)).unwrap()
         };
-        let owner = &coarse.rate.owner;
         let samples = &coarse.samples;
         Self {
             size: UVec2::new(
@@ -85,7 +84,7 @@ impl Inputs {
                 renderer.settings().picture.height,
             ),
             camera: camera.clone(),
-            owner: read(&owner.texture, 0, owner.blocks(1)),
+            owner: rate_cells(&coarse.rate.owner, 1),
             samples: samples
                 .range()
                 .map(|level| {

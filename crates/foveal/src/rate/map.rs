@@ -1,24 +1,24 @@
 //! The rate map's passes and targets.
 
-use super::targets::{CELL_FORMAT, RateTargets};
-use super::{RateImage, RequestUniform};
+use super::{RateImage, RateTargets, RequestUniform};
+use crate::every_pixel::{LevelNumbers, LevelPass, LevelRecipe};
 use crate::geometry::GBuffer;
-use crate::gpu::{Gpu, MipChain, bind_group, bind_group_layout, sampled, sampled_layers, uniform};
-use crate::recorder::{Recorder, overwritten};
-use crate::shader::Screen;
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, sampled_layers, uniform};
+use crate::recorder::Recorder;
 use crate::stereo::{Eye, LensFit};
 use crate::{Settings, shader};
 
 /// Fills the rate map.
 #[derive(Debug)]
 pub(crate) struct RateMapPass {
-    request: wgpu::RenderPipeline,
+    request: LevelPass,
     request_layout: wgpu::BindGroupLayout,
     request_uniform: wgpu::Buffer,
     image: wgpu::TextureView,
-    pyramid: wgpu::RenderPipeline,
-    owner: wgpu::RenderPipeline,
+    pyramid: LevelPass,
+    owner: LevelPass,
     cells_layout: wgpu::BindGroupLayout,
+    numbers: LevelNumbers,
 }
 
 impl RateMapPass {
@@ -30,7 +30,7 @@ impl RateMapPass {
         let cells = sampled(wgpu::TextureSampleType::Uint);
         let words = sampled_layers(wgpu::TextureSampleType::Uint);
         let depth = sampled_layers(wgpu::TextureSampleType::Depth);
-        let stage = wgpu::ShaderStages::FRAGMENT;
+        let stage = LevelPass::stage(gpu, settings);
         let request_layout = bind_group_layout(
             gpu,
             "requested levels",
@@ -38,16 +38,15 @@ impl RateMapPass {
             &[uniform(), cells, words, words, depth],
         );
         let cells_layout = bind_group_layout(gpu, "rate cells", stage, &[cells]);
-        let pipeline = |label, shader, entry, layout, constant: &[(&str, f64)]| {
-            shader::screen(
-                gpu,
-                &Screen {
-                    groups: &[frame_layout, layout],
-                    targets: &[Some(CELL_FORMAT.into())],
-                    constants: constant,
-                    ..Screen::of_level(label, &shader::module(gpu, label, shader), entry)
-                },
-            )
+        let pass = |label, drawn, dispatched, layout, constants: &[(&str, f64)]| {
+            let recipe = LevelRecipe {
+                label,
+                drawn,
+                dispatched,
+                groups: [frame_layout, layout],
+                constants,
+            };
+            LevelPass::new(gpu, settings, &recipe)
         };
         let coarsest = f64::from(settings.coarse.coarsest_level);
         let balance = f64::from(u8::from(settings.coarse.balance));
@@ -57,29 +56,31 @@ impl RateMapPass {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
+        let (by_draw, by_dispatch): (_, &[_]) = if settings.sees_by_depth() {
+            let variant = shader::RATE_REQUEST.variant(&["BY_DEPTH"]);
+            (variant, &["BY_DEPTH", "DISPATCHED"])
+        } else {
+            (shader::RATE_REQUEST, &["DISPATCHED"])
+        };
         Self {
-            request: pipeline(
+            request: pass(
                 "requested levels",
-                if settings.sees_by_depth() {
-                    shader::RATE_REQUEST.variant(&["BY_DEPTH"])
-                } else {
-                    shader::RATE_REQUEST
-                },
-                "requested_level",
+                (by_draw, "requested_level"),
+                (shader::RATE_REQUEST.variant(by_dispatch), "request_all"),
                 &request_layout,
                 &super::request::request_constants(settings),
             ),
-            pyramid: pipeline(
+            pyramid: pass(
                 "rate pyramid",
-                shader::RATE_PYRAMID,
-                "reduce",
+                (shader::RATE_PYRAMID, "reduce"),
+                (shader::RATE_PYRAMID.variant(&["DISPATCHED"]), "reduce_all"),
                 &cells_layout,
                 &[("BALANCE", balance)],
             ),
-            owner: pipeline(
+            owner: pass(
                 "rate owner",
-                shader::RATE_OWNER,
-                "owner_level",
+                (shader::RATE_OWNER, "owner_level"),
+                (shader::RATE_OWNER.variant(&["DISPATCHED"]), "own_all"),
                 &cells_layout,
                 &[("COARSEST", coarsest)],
             ),
@@ -88,6 +89,7 @@ impl RateMapPass {
             // One texel of level 0: without a picture every pixel is requested.
             image: image_texture(gpu, (1, 1), &[0]),
             cells_layout,
+            numbers: LevelNumbers::new(gpu),
         }
     }
 
@@ -129,27 +131,18 @@ impl RateMapPass {
                 &[wgpu::BindingResource::TextureView(view)],
             )
         };
-        let mut fill = |label, chain: &MipChain, level, pipeline, group: &wgpu::BindGroup| {
-            let color = overwritten(chain.level(level));
-            let mut pass = recorder.render_pass(label, &[color], None);
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(1, group, &[]);
-            chain.draw(&mut pass, level);
+        let mut run = |label, pass: &LevelPass, chain, levels: &[_]| {
+            pass.run(recorder, label, chain, levels, &self.numbers);
         };
         let pyramid = &target.pyramid;
-        fill(
-            "requested levels",
-            pyramid,
-            1,
-            &self.request,
-            &request_group,
-        );
-        for level in pyramid.range().skip(1) {
-            let below = cells(pyramid.level(level - 1));
-            fill("rate pyramid", pyramid, level, &self.pyramid, &below);
-        }
-        let whole = cells(&pyramid.whole);
-        fill("rate owner", &target.owner, 1, &self.owner, &whole);
+        let reduced: Vec<_> = (pyramid.range().skip(1))
+            .map(|level| (level, cells(pyramid.level(level - 1))))
+            .collect();
+        let whole = (1, cells(&pyramid.whole));
+        let requested = (1, request_group);
+        run("requested levels", &self.request, pyramid, &[requested]);
+        run("rate pyramid", &self.pyramid, pyramid, &reduced);
+        run("rate owner", &self.owner, &target.owner, &[whole]);
     }
 }
 
@@ -165,7 +158,7 @@ fn image_texture(gpu: &Gpu, (width, height): (u32, u32), levels: &[u8]) -> wgpu:
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: CELL_FORMAT,
+        format: wgpu::TextureFormat::R8Uint,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });

@@ -6,11 +6,17 @@
 
 #variant
 #variant BY_DEPTH
+#variant DISPATCHED
+#variant BY_DEPTH DISPATCHED
 #import rate/fovea.wgsl
 #import shared/blocks.wgsl
 #import shared/frame.wgsl
 #import shared/layers.wgsl
+#ifdef DISPATCHED
+#import shared/dispatched_level.wgsl
+#else
 #import shared/level.wgsl
+#endif
 #ifdef BY_DEPTH
 #import rate/crease_of_depth.wgsl
 #else
@@ -104,9 +110,7 @@ fn holds_edge(block: vec2u) -> bool {
     return turns(first, last);
 }
 
-@fragment
-fn requested_level(in: LevelVertex) -> @location(0) u32 {
-    let block = vec2u(in.position.xy);
+fn requested(block: vec2u) -> u32 {
     let last = picture_of(block * 2u).end - 1u;
     var level = request.coarsest;
     for (var i = 0u; i < 4u; i++) {
@@ -126,3 +130,17 @@ fn requested_level(in: LevelVertex) -> @location(0) u32 {
     return select(level, level - min(level, BUMPY_BY), is_bumped);
 #endif
 }
+
+#ifdef DISPATCHED
+@compute @workgroup_size(8, 8)
+fn request_all(@builtin(global_invocation_id) at: vec3u) {
+    if is_of_level(at.xy) {
+        write_cell(at.xy, requested(at.xy));
+    }
+}
+#else
+@fragment
+fn requested_level(in: LevelVertex) -> @location(0) u32 {
+    return requested(vec2u(in.position.xy));
+}
+#endif

@@ -1,13 +1,12 @@
 //! What the rate map is drawn to.
 
 use crate::Settings;
+use crate::every_pixel::LevelPass;
 use crate::gpu::{Gpu, MipChain};
 use crate::stereo::EyeLayout;
 
-/// A level, and whether a geometric edge lies in the block.
-pub(super) const CELL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
-
-/// The rate map of one frame size.
+/// The rate map of one frame size: of each block a level, and whether a geometric edge lies in it
+/// (`shared/blocks.wgsl`).
 #[derive(Debug)]
 pub(crate) struct RateTargets {
     /// Minimum of the requested levels per block, from level 1 on.
@@ -26,8 +25,9 @@ impl RateTargets {
         let size = EyeLayout::of(settings).target_size();
         // Level 0 tiles are found by their parent, so there is always one.
         let coarsest = u32::from(settings.coarse.coarsest_level).max(1);
-        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
-        let chain = |label, last| MipChain::new(gpu, label, size, 1..=last, CELL_FORMAT, usage);
+        let (format, written) = LevelPass::format(gpu, settings);
+        let usage = written | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let chain = |label, last| MipChain::new(gpu, label, size, 1..=last, format, usage);
         Self {
             pyramid: chain("rate pyramid", coarsest),
             owner: chain("owner levels", 1),

@@ -290,8 +290,8 @@ pub enum LightAssignment {
     Brute,
 }
 
-/// Kind of the passes that light every pixel, or reproject its kept light. The picture is the same
-/// but for rounding.
+/// Kind of the passes that light every pixel, find its rate, or reproject its kept light. The
+/// picture is the same but for rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",

@@ -98,9 +98,9 @@ settings! {
         /// Lights that a sample evaluates: clustered takes those that reach its part of the
         /// view, brute takes all (the reference). The picture is the same.
         lights => assignment: LightAssignment = LightAssignment::default(), "Lights", Kind::choice::<LightAssignment>();
-        /// Kind of the passes that light every pixel, or reproject its kept light: fragment draws,
-        /// compute dispatches. auto takes compute on graphics cards of their own, fragment
-        /// elsewhere. The picture is the same but for rounding.
+        /// Kind of the passes that light every pixel, find its rate, or reproject its kept light:
+        /// fragment draws, compute dispatches. auto takes compute on graphics cards of their own,
+        /// fragment elsewhere. The picture is the same but for rounding.
         lighting_pass => pass: LightingPass = LightingPass::default(), "Pass", Kind::choice::<LightingPass>();
         /// Shadows of all lights: off lets light pass through everything, hard compares once per
         /// light and sample, soft nine times, which smooths edges over three texels. contact fades

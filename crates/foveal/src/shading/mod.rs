@@ -8,9 +8,6 @@ mod balance;
 mod coarse;
 #[cfg(test)]
 pub(crate) mod dielectric;
-#[cfg(test)]
-mod dispatched_tests;
-mod every_pixel;
 mod history;
 mod pass;
 mod samples;

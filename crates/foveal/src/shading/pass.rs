@@ -1,8 +1,8 @@
 //! The shading pass.
 
-use super::every_pixel::{EveryPixel, Recipe};
 use super::{SampleList, Samples};
 use crate::environment::environment_constants;
+use crate::every_pixel::{EveryPixel, Recipe};
 use crate::formats::RADIANCE_FORMAT;
 use crate::geometry::GBuffer;
 use crate::gpu::{

@@ -7,7 +7,7 @@ use glam::UVec2;
 
 use super::block::sample_texel;
 use crate::shading::twin::{normal_of_depth, unit_from_octahedral};
-use crate::testing::{gpu, picture, rendered, small, texels};
+use crate::testing::{gpu, picture, rate_cells, rendered, small, texels};
 use crate::{
     Antialiasing, CoarseSample, Composite, Error, Geometry, RateSource, RateStage, RefineEdges,
     Renderer, Settings, Shading, Stereo,
@@ -38,8 +38,7 @@ fn settings(rate_stage: RateStage) -> Settings {
 /// Levels of the pixels' owners, row by row.
 fn owners(renderer: &Renderer) -> Vec<u8> {
     let owner = &renderer.targets().coarse.as_ref().unwrap().rate.owner;
-    let read = crate::gpu::read_level(gpu(), &owner.texture, 0, owner.blocks(1));
-    let quads = pollster::block_on(read).unwrap();
+    let quads = rate_cells(owner, 1);
     let across = owner.blocks(1).0;
     (0..SIZE.0 * SIZE.1)
         .map(|i| quads[(i / SIZE.0 / 2 * across + i % SIZE.0 / 2) as usize] & 15)

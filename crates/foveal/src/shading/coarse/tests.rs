@@ -4,8 +4,7 @@ use foveal_generate as generate;
 use foveal_scene::Scene;
 
 use super::block::sample_texel;
-use crate::gpu::{MipChain, read_level};
-use crate::testing::{gpu, picture, rendered, small, texels};
+use crate::testing::{gpu, picture, rate_cells, rendered, small, texels};
 use crate::{
     CoarseBackend, CoarseSample, Composite, Frame, MinPyramid, RateImage, RateSource, RefineEdges,
     Renderer, Settings, Shading,
@@ -57,11 +56,6 @@ fn draw_with_image(settings: &Settings, image: RateImage) -> Renderer {
     })
 }
 
-fn cells(chain: &MipChain, level: u32) -> Vec<u8> {
-    let read = read_level(gpu(), &chain.texture, level - 1, chain.blocks(level));
-    pollster::block_on(read).unwrap()
-}
-
 fn radiance(renderer: &Renderer) -> Vec<[u16; 4]> {
     texels(&renderer.targets().radiance_view)
 }
@@ -70,7 +64,7 @@ fn radiance(renderer: &Renderer) -> Vec<[u16; 4]> {
 fn twin(renderer: &Renderer) -> MinPyramid {
     let s = renderer.settings();
     let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
-    let quads = cells(&rate.pyramid, 1);
+    let quads = rate_cells(&rate.pyramid, 1);
     let across = s.picture.width.div_ceil(2);
     let requests: Vec<u8> = (0..s.picture.width * s.picture.height)
         .map(|i| quads[(i / s.picture.width / 2 * across + i % s.picture.width / 2) as usize])
@@ -103,12 +97,12 @@ fn the_rate_map_equals_its_twin_byte_for_byte() {
             let twin = twin(&renderer);
             for level in 1..=8u8 {
                 assert_eq!(
-                    cells(&rate.pyramid, level.into()),
+                    rate_cells(&rate.pyramid, level.into()),
                     twin.cells(level),
                     "{size:?}, level {level}"
                 );
             }
-            let owners = cells(&rate.owner, 1);
+            let owners = rate_cells(&rate.owner, 1);
             for (i, owner) in (0..size.0 * size.1).map(|i| {
                 let quad = i / size.0 / 2 * size.0.div_ceil(2) + i % size.0 / 2;
                 (i, owners[quad as usize])
@@ -136,7 +130,7 @@ fn requested_levels_equal_their_twin() {
         let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
         let eyes = crate::stereo::eyes(&settings, &scene().cameras[0]).unwrap();
         let uniform = crate::rate::RequestUniform::new(&settings, &eyes, None);
-        let quads = cells(&rate.pyramid, 1);
+        let quads = rate_cells(&rate.pyramid, 1);
         let level = |x: u32, y: u32| {
             let (x, y) = (x.min(SIZES[0].0 - 1), y.min(SIZES[0].1 - 1));
             uniform.level(&settings, x, y, Some(&image))

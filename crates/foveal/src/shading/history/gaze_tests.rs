@@ -5,16 +5,16 @@ use foveal_scene::Scene;
 
 use super::lit::ROUND;
 use super::tests::{differing, kept, scene, seen};
-use crate::gpu::read_level;
-use crate::testing::{Film, gpu, rendered};
+use crate::testing::{Film, rate_cells, rendered};
 use crate::{Antialiasing, RateSource, Settings, ShadowSizes, Shadows};
 
 /// The levels of blocks of the last frame's rate map.
 fn levels(film: &Film) -> Vec<u8> {
     let targets = film.renderer.targets();
-    let owner = &targets.coarse.as_ref().expect("coarse shading").rate.owner;
-    let read = read_level(gpu(), &owner.texture, 0, owner.blocks(1));
-    pollster::block_on(read).expect("read-back works")
+    rate_cells(
+        &targets.coarse.as_ref().expect("coarse shading").rate.owner,
+        1,
+    )
 }
 
 #[test]

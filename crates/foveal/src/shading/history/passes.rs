@@ -11,9 +11,9 @@ use crate::gpu::{
     storage_write, uniform, written,
 };
 
+use crate::every_pixel::{EveryPixel, Recipe};
 use crate::rate::RateTargets;
 use crate::recorder::Recorder;
-use crate::shading::every_pixel::{EveryPixel, Recipe};
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
 use crate::shadow::Place;
 use crate::targets::Targets;

@@ -8,9 +8,10 @@ use glam::UVec2;
 use super::lit::ROUND;
 use super::targets::HistoryTargets;
 use super::twin::{Before, Fate, Seen};
-use crate::gpu::read_level;
 use crate::stereo::EyeLayout;
-use crate::testing::{Film, f32_of_half, gpu, rendered, rounds_alike, shifted, small, texels};
+use crate::testing::{
+    Film, f32_of_half, rate_cells, rendered, rounds_alike, shifted, small, texels,
+};
 use crate::{Antialiasing, FrameStats, Geometry, RateSource, Renderer, Settings, Shading, Stereo};
 
 const SIZE: (u32, u32) = (157, 101);
@@ -411,13 +412,13 @@ fn what_is_carried_and_what_is_shaded_equal_their_twin() {
         };
         let targets = film.renderer.targets();
         let owner = &targets.coarse.as_ref().expect("coarse shading").rate.owner;
-        let owner = pollster::block_on(read_level(gpu(), &owner.texture, 0, owner.blocks(1)));
+        let owner = rate_cells(owner, 1);
         let frame_seen = Seen {
             size: UVec2::new(SIZE.0, SIZE.1),
             surface: texels(&targets.gbuffer.surface_view),
             depth: texels(&targets.gbuffer.depth_view),
             identity: texels(&targets.gbuffer.identity_view),
-            owner: owner.expect("read-back works"),
+            owner,
         };
         let told = film.renderer.history().told;
         let found: Vec<u32> = texels(&kept.seen[1 - last]);

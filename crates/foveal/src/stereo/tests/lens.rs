@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use super::present::linear;
 use super::{halves, shape, two_eyes};
 use crate::stereo::{LensFit, eyes};
-use crate::testing::{rendered, texels};
+use crate::testing::{rate_cells, rendered};
 use crate::{CoarseBackend, Composite, Output, RateSource, RefineEdges, Settings, Shading};
 
 const NAMES: [&str; 4] = ["cardboard-v2", "cardboard-v1", "dk1", "ideal"];
@@ -141,8 +141,8 @@ fn the_rate_map_follows_the_lens() {
         .expect("coarse")
         .rate
         .pyramid;
-    let cells: Vec<u8> = texels(pyramid.level(1));
-    let across = pyramid.texture.width();
+    let cells = rate_cells(pyramid, 1);
+    let across = pyramid.blocks(1).0;
     let frusta = [[-1.0f32, 0.8, 0.9], [-0.7, 1.0, 0.7]];
     for ((eye, fit), [left, right, top]) in (0u32..).zip(fits(&settings)).zip(frusta) {
         let radii = fit.squared_radii();

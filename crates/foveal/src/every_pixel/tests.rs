@@ -2,11 +2,11 @@
 
 use foveal_generate as generate;
 
-use super::every_pixel::dispatches;
-use crate::testing::{Film, gpu, picture, rendered, rounds_alike, shifted, small};
+use super::dispatches;
+use crate::testing::{Film, gpu, picture, rate_cells, rendered, rounds_alike, shifted, small};
 use crate::{
-    AmbientOcclusion, Antialiasing, EnvironmentSource, Geometry, LightingPass, Settings, Shading,
-    Shadows, Stereo,
+    AmbientOcclusion, Antialiasing, Composite, EnvironmentSource, Geometry, LightingPass,
+    RateSource, RateStage, Settings, Shading, Shadows, Stereo,
 };
 
 /// The same settings by each pass.
@@ -77,6 +77,50 @@ fn a_dispatch_reprojects_kept_light_as_the_draw_does() {
             });
             let [draw, dispatch] = &pictures;
             assert_alike(draw, dispatch, &format!("{stereo:?}, frame {frame}"));
+        }
+    }
+}
+
+#[test]
+fn a_dispatch_finds_the_same_rates_as_the_draw() {
+    let scene = generate::by_name("demo:1000").expect("a scene of that name");
+    type Way = fn(&mut Settings);
+    let ways: [(&str, Way); 4] = [
+        ("gbuffer", |_| {}),
+        ("seen by depth", |s| {
+            s.geometry.path = Geometry::Visibility;
+            s.coarse.composite = Composite::Smooth;
+            s.rate.stage = RateStage::Both;
+        }),
+        ("unbalanced", |s| s.coarse.balance = false),
+        ("two eyes", |s| s.stereo.mode = Stereo::Instanced),
+    ];
+    for (name, way) in ways {
+        let settings = small(157, 101).with(|s| {
+            s.shading.mode = Shading::Coarse;
+            s.coarse.history = false;
+            s.coarse.source = RateSource::Radii;
+            s.coarse.fovea_inner = 0.1;
+            s.eye.gaze = [0.3, 0.6];
+            s.rate.force = true;
+            way(s);
+        });
+        let [draw, dispatch] = both(&settings).map(|settings| {
+            let renderer = rendered(&scene, &scene.cameras[0], &settings);
+            let coarse = renderer.targets().coarse.as_ref().expect("coarse shading");
+            let rate = &coarse.rate;
+            let levels: Vec<_> = (rate.pyramid.range())
+                .map(|level| rate_cells(&rate.pyramid, level))
+                .collect();
+            (levels, rate_cells(&rate.owner, 1))
+        });
+        let owners: std::collections::BTreeSet<u8> = draw.1.iter().copied().collect();
+        assert!(owners.len() > 5, "{name}: {owners:?}");
+        if rounds_alike() {
+            assert!(draw == dispatch, "{name}");
+        } else {
+            let off = draw.1.iter().zip(&dispatch.1).filter(|(a, b)| a != b);
+            assert!(off.count() * 100 <= draw.1.len(), "{name}");
         }
     }
 }

@@ -1,4 +1,11 @@
-//! Passes over every pixel, as the fragments of a draw or as the invocations of a dispatch.
+//! Passes over every pixel, or every block of a level, as the fragments of a draw or as the
+//! invocations of a dispatch.
+
+mod level;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use level::{LevelNumbers, LevelPass, LevelRecipe};
 
 use crate::gpu::{Gpu, bind_group, bind_group_layout, written};
 use crate::recorder::{Recorder, overwritten};
@@ -21,34 +28,34 @@ impl LightingPass {
     }
 }
 
-/// Whether passes over every pixel are dispatched.
-pub(super) fn dispatches(gpu: &Gpu, settings: &Settings) -> bool {
+/// Whether they are dispatched.
+pub(crate) fn dispatches(gpu: &Gpu, settings: &Settings) -> bool {
     settings.lighting.pass.resolved(gpu) == LightingPass::Compute
 }
 
 /// What a pass is made of.
-pub(super) struct Recipe<'a> {
-    pub(super) label: &'a str,
+pub(crate) struct Recipe<'a> {
+    pub(crate) label: &'a str,
     /// With the entry point of its fragments.
-    pub(super) drawn: (Shader, &'a str),
+    pub(crate) drawn: (Shader, &'a str),
     /// With the entry point of its invocations, in workgroups of 8 x 8. It writes the targets as
     /// the bindings of the group after `groups`.
-    pub(super) dispatched: (Shader, &'a str),
-    pub(super) groups: &'a [&'a wgpu::BindGroupLayout],
-    pub(super) targets: &'a [wgpu::TextureFormat],
-    pub(super) constants: &'a [(&'a str, f64)],
+    pub(crate) dispatched: (Shader, &'a str),
+    pub(crate) groups: &'a [&'a wgpu::BindGroupLayout],
+    pub(crate) targets: &'a [wgpu::TextureFormat],
+    pub(crate) constants: &'a [(&'a str, f64)],
 }
 
 /// A pass that writes every pixel of its targets.
 #[derive(Debug)]
-pub(super) enum EveryPixel {
+pub(crate) enum EveryPixel {
     Drawn(wgpu::RenderPipeline),
     /// With the layout of the targets' group.
     Dispatched(wgpu::ComputePipeline, wgpu::BindGroupLayout),
 }
 
 impl EveryPixel {
-    pub(super) fn new(gpu: &Gpu, settings: &Settings, recipe: &Recipe<'_>) -> Self {
+    pub(crate) fn new(gpu: &Gpu, settings: &Settings, recipe: &Recipe<'_>) -> Self {
         let label = recipe.label;
         if dispatches(gpu, settings) {
             let (shader, entry) = recipe.dispatched;
@@ -78,7 +85,7 @@ impl EveryPixel {
     }
 
     /// Encodes the pass, timed under `label`, with these groups after group 0.
-    pub(super) fn run(
+    pub(crate) fn run(
         &self,
         recorder: &mut Recorder<'_>,
         label: &str,
