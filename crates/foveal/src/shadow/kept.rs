@@ -27,6 +27,8 @@ pub(super) struct Kept {
     pub(super) left_out: Vec<u32>,
     /// What it has been drawn for: shadows of what is left out fall on none of it.
     pub(super) received: Option<Box<Received>>,
+    /// The frame that found last that it sees nothing of what the camera sees.
+    pub(super) sees_nothing_in: Option<u64>,
     /// The frame that wanted it last.
     wanted_in: u64,
     /// The frame after which it had to be drawn again last.
@@ -316,6 +318,7 @@ impl KeptTiles {
                     if kept.volume != want.volume {
                         kept.volume = want.volume;
                         kept.received = None;
+                        kept.sees_nothing_in = None;
                         kept.disturb(self.frame - 1, None);
                         kept.light_moves = kept.is_restless;
                     }
@@ -388,6 +391,7 @@ impl KeptTiles {
             held: None,
             left_out: Vec::new(),
             received: None,
+            sees_nothing_in: None,
             wanted_in: self.frame,
             disturbed_in: None,
             is_restless: false,

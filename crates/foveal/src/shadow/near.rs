@@ -3,9 +3,9 @@
 use foveal_scene::{Aabb, AlphaMode};
 use glam::Vec3;
 
+use super::kept::Kept;
 use super::plan::Wanted;
 use super::receivers::{NearCells, Reach, SeenCells};
-use super::volume::Volume;
 use crate::scene::{DrawnInstance, SceneOnGpu};
 
 /// What a frame sees.
@@ -67,11 +67,14 @@ impl<'a> NearLight<'a> {
 }
 
 impl Near<'_> {
-    /// Whether a tile of `side` texels sees any of it.
-    pub(super) fn meets(&self, volume: &Volume, side: f32) -> bool {
+    /// Whether a tile sees any of it.
+    pub(super) fn meets(&self, kept: &mut Kept) -> bool {
         match self {
-            Self::Instances(boxes) => boxes.iter().any(|b| volume.meets(b, side)),
-            Self::Cells(cells) => cells.meets(volume, side),
+            Self::Instances(boxes) => {
+                let side = kept.tile.side() as f32;
+                boxes.iter().any(|b| kept.volume.meets(b, side))
+            }
+            Self::Cells(cells) => cells.meet(kept),
         }
     }
 }

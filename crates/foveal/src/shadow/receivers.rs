@@ -5,7 +5,7 @@ use std::cell::OnceCell;
 use foveal_scene::Aabb;
 use glam::Vec3;
 
-use super::kept::Received;
+use super::kept::{Kept, Received};
 use super::plan::Wanted;
 use super::volume::Volume;
 
@@ -130,10 +130,25 @@ impl NearCells<'_> {
         self.all.get_or_init(|| self.within(self.seen.all))
     }
 
-    /// Whether a tile of `side` texels sees any of them.
-    pub(super) fn meets(&self, volume: &Volume, side: f32) -> bool {
-        let mut boxes = self.all().iter().map(|&c| &self.seen.boxes[c as usize]);
-        boxes.any(|b| volume.meets(b, side))
+    fn come_into_sight(&self) -> &[u32] {
+        self.new.get_or_init(|| self.within(self.seen.new))
+    }
+
+    /// Whether a tile sees any of them. One that saw none in the frame before sees none but those
+    /// that have come into sight.
+    pub(super) fn meet(&self, kept: &mut Kept) -> bool {
+        let frame = self.seen.frame;
+        let saw_nothing = kept.sees_nothing_in.is_some_and(|last| last + 1 == frame);
+        let cells = if saw_nothing {
+            self.come_into_sight()
+        } else {
+            self.all()
+        };
+        let side = kept.tile.side() as f32;
+        let mut boxes = cells.iter().map(|&c| &self.seen.boxes[c as usize]);
+        let sees_any = boxes.any(|b| kept.volume.meets(b, side));
+        kept.sees_nothing_in = (!sees_any).then_some(frame);
+        sees_any
     }
 
     /// Adds what has come into sight since a tile of `side` texels was looked at last; whether its
@@ -143,13 +158,12 @@ impl NearCells<'_> {
             boxes,
             since,
             frame,
-            new,
             reach,
             ..
         } = self.seen;
         let before = std::mem::replace(&mut received.last, frame);
         let cells = if before + 1 == frame {
-            self.new.get_or_init(|| self.within(new))
+            self.come_into_sight()
         } else {
             self.all()
         };

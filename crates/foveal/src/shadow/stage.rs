@@ -320,11 +320,11 @@ impl Drawing {
         let mut tiles: Vec<(Wanted, usize)> = Vec::new();
         for of_light in missing.chunk_by(|a, b| light_of(a) == light_of(b)) {
             let light = NearLight::new(scene, receivers, of_light);
-            let seen = |want: &&Wanted| {
-                let kept = self.kept.get(want);
-                kept.is_some_and(|k| light.near.meets(&want.volume, k.tile.side() as f32))
+            let mut seen = |want: &&Wanted| {
+                let kept = self.kept.get_mut(want);
+                kept.is_some_and(|kept| light.near.meets(kept))
             };
-            let seen = of_light.iter().filter(seen);
+            let seen = of_light.iter().filter(|want| seen(want));
             tiles.extend(seen.map(|&want| (want, lights.len())));
             lights.push(light);
         }
