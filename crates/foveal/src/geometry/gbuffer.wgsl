@@ -18,7 +18,7 @@ override FACE_NORMAL: bool = false;
 
 struct GBufferOut {
     @location(0) surface: vec4u,
-    // x: instance number + 1 (0 = nothing); y: motion in pixels since the frame before, two halves.
+    // `shared/identity.wgsl`.
     @location(1) identity: vec2u,
 }
 
@@ -36,6 +36,6 @@ fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> GBufferOut {
     }
     return GBufferOut(
         words,
-        vec2u((in.instance & ~RIGHT_EYE) + 1u, pack2x16float(motion_in_pixels(in.now, in.before))),
+        identity_of(in.instance, in.now, in.before),
     );
 }

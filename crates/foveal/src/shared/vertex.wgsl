@@ -4,6 +4,7 @@
 enable clip_distances;
 #endif
 #import shared/frame.wgsl
+#import shared/identity.wgsl
 #import shared/instances.wgsl
 #ifdef STROKES
 #import shared/stroke.wgsl
@@ -30,9 +31,10 @@ struct VertexOut {
     @location(4) color: vec4f,
     // The instance's number; the highest bit tells the eye.
     @location(5) @interpolate(flat) instance: u32,
-    // x, y, w of the eye's own clip space now and in the frame before.
+    // x, y, w of the eye's own clip space now and in the frame before; w of `before`: by how many
+    // metres the place has moved.
     @location(6) now: vec3f,
-    @location(7) before: vec3f,
+    @location(7) before: vec4f,
 }
 
 // How eyes are drawn: 0 one view to a target or layer, 1 each in a pass of its own, 2 as instances
@@ -101,19 +103,22 @@ fn previous_instance_position(i: Instance, position: vec3f) -> vec3f {
     return vec3f(dot(i.previous_x, p), dot(i.previous_y, p), dot(i.previous_z, p));
 }
 
-// Whether nothing has moved since the frame before. Positions then and now do not tell: they are
-// computed by different instructions, which may round differently.
-fn is_at_rest(i: Instance, view: u32, position: vec3f, previous_position: vec3f) -> bool {
-    let view_rests = ((frame.resting_views >> view) & 1u) != 0u;
+// Whether a place rests in the world. Positions then and now do not tell: they are computed by
+// different instructions, which may round differently.
+fn rests_in_world(i: Instance, position: vec3f, previous_position: vec3f) -> bool {
     let instance_rests = all(i.world_x == i.previous_x) & all(i.world_y == i.previous_y) & all(i.world_z == i.previous_z);
-    return view_rests & instance_rests & all(position == previous_position);
+    return instance_rests & all(position == previous_position);
 }
 
-// x, y, w of an eye's own clip space in the frame before; `now` where nothing has moved.
-fn clip_before(i: Instance, view: u32, now: vec3f, position: vec3f, previous_position: vec3f) -> vec3f {
+// x, y, w of an eye's own clip space in the frame before, `now` where nothing has moved; and by how
+// many metres the place has moved in the world.
+fn clip_before(i: Instance, view: u32, now: vec3f, position: vec3f, previous_position: vec3f) -> vec4f {
     let previous = previous_instance_position(i, previous_position);
     let before = frame.views[view].previous_clip_from_world * vec4f(previous, 1.0);
-    return select(before.xyw, now, is_at_rest(i, view, position, previous_position));
+    let rests = rests_in_world(i, position, previous_position);
+    let view_rests = ((frame.resting_views >> view) & 1u) != 0u;
+    let moved = select(distance(previous, instance_position(i, position)), 0.0, rests);
+    return vec4f(select(before.xyw, now, rests & view_rests), moved);
 }
 
 // 1, or -1 where the instance's transform turns the winding around.
@@ -186,6 +191,19 @@ fn motion_in_pixels(now: vec3f, before: vec3f) -> vec2f {
     return clamp(moved * vec2f(0.5, -0.5) * frame.size, vec2f(-60000.0), vec2f(60000.0));
 }
 
+// Part of a pixel's width, at a surface's distance, by which the surface has moved in the world from
+// which on other light falls on it.
+const MOVED: f32 = 0.125;
+
+// `shared/identity.wgsl`.
+fn identity_of(marked_instance: u32, now: vec3f, before: vec4f) -> vec2u {
+    let view = select(0u, 1u, (marked_instance & RIGHT_EYE) != 0u);
+    let pixel_width = 2.0 * abs(frame.views[view].view_from_ndc.x * now.z) / frame.size.x;
+    let motion = pack2x16float(motion_in_pixels(now, before.xyz)) & ~HAS_MOVED;
+    let moved = select(0u, HAS_MOVED, before.w > MOVED * pixel_width);
+    return vec2u((marked_instance & ~RIGHT_EYE) + 1u, motion | moved);
+}
+
 fn unit_or(v: vec3f, otherwise: vec3f) -> vec3f {
     let squared = dot(v, v);
     return select(otherwise, v * inverseSqrt(max(squared, 1e-37)), squared > 1e-30);
@@ -211,7 +229,7 @@ struct ClippedVertexOut {
     @location(4) color: vec4f,
     @location(5) @interpolate(flat) instance: u32,
     @location(6) now: vec3f,
-    @location(7) before: vec3f,
+    @location(7) before: vec4f,
 }
 
 @vertex

@@ -15,15 +15,15 @@ struct VisibleVertex {
     @location(1) alpha: f32,
     // The instance's number; the highest bit tells the eye.
     @location(2) @interpolate(flat) instance: u32,
-    // x, y, w of the eye's own clip space now and in the frame before.
+    // As `VertexOut`'s.
     @location(3) now: vec3f,
-    @location(4) before: vec3f,
+    @location(4) before: vec4f,
     // Within its mesh; only where vertices are pulled.
     @location(5) @interpolate(flat) triangle: u32,
 }
 
 struct VisibleOut {
-    // As the G-buffer's identity: instance number + 1, motion.
+    // `shared/identity.wgsl`.
     @location(0) identity: vec2u,
     @location(1) triangle: u32,
 }
@@ -43,6 +43,5 @@ fn visible(in: VisibleVertex, triangle: u32) -> VisibleOut {
     if is_beyond(in.now, in.instance) {
         discard;
     }
-    let instance = in.instance & ~RIGHT_EYE;
-    return VisibleOut(vec2u(instance + 1u, pack2x16float(motion_in_pixels(in.now, in.before))), triangle);
+    return VisibleOut(identity_of(in.instance, in.now, in.before), triangle);
 }

@@ -25,14 +25,11 @@ fn scene() -> Scene {
         range_m: Some(3.0),
         node: None,
     }];
-    place(&mut scene, -2.0, 0.0);
+    move_board(
+        &mut scene,
+        Mat4::from_translation(Vec3::new(-2.0, 0.0, 0.0)),
+    );
     scene
-}
-
-/// Moves the board to a place and turns it about its middle.
-fn place(scene: &mut Scene, x: f32, turned: f32) {
-    let at = Mat4::from_translation(Vec3::new(x, 0.0, 0.0)) * Mat4::from_rotation_y(turned);
-    move_board(scene, at);
 }
 
 fn move_board(scene: &mut Scene, at: Mat4) {
@@ -43,15 +40,14 @@ fn move_board(scene: &mut Scene, at: Mat4) {
 
 /// Mean difference of what a moving board shows and what full shading shows of it, in parts of the
 /// latter. The camera goes by `steps` metres a frame.
-fn error(settings: &Settings, steps: f32, at: impl Fn(u32) -> (f32, f32)) -> f32 {
+fn error(settings: &Settings, steps: f32, at: impl Fn(f32) -> Mat4) -> f32 {
     let camera = Camera::look_at(Vec3::new(0.0, 0.0, 6.0), Vec3::ZERO, Vec3::Y, 0.8);
     let full = settings.clone().with(|s| s.shading.mode = Shading::Full);
     let mut scene = scene();
     let mut films = [Film::new(&scene, settings), Film::new(&scene, &full)];
     let (mut off, mut all) = (0.0, 0.0);
     for frame in 0..24 {
-        let (x, turned) = at(frame);
-        place(&mut scene, x, turned);
+        move_board(&mut scene, at(frame as f32));
         let radiance = films.each_mut().map(|film| {
             pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
             film.draw(&shifted(&camera, steps * frame as f32));
@@ -72,8 +68,11 @@ fn error(settings: &Settings, steps: f32, at: impl Fn(u32) -> (f32, f32)) -> f32
 
 #[test]
 fn what_moves_or_turns_has_the_light_of_where_it_is() {
-    let slides = |frame: u32| (-2.0 + 0.16 * frame as f32, 0.0_f32);
-    let turns = |frame: u32| (0.4_f32, 0.06 * frame as f32);
+    let to = |x: f32, z: f32| Mat4::from_translation(Vec3::new(x, 0.0, z));
+    let slides = |frame: f32| to(-2.0 + 0.16 * frame, 0.0);
+    let turns = |frame: f32| to(0.4, 0.0) * Mat4::from_rotation_y(0.06 * frame);
+    // Along the line of sight: its pixels hardly move.
+    let approaches = |frame: f32| to(0.0, -0.9 + 0.06 * frame);
     for level in [0, 2] {
         let with = |history| {
             small(157, 101).with(|s| {
@@ -84,8 +83,9 @@ fn what_moves_or_turns_has_the_light_of_where_it_is() {
             })
         };
         for (way, steps, at) in [
-            ("slides", 0.0, &slides as &dyn Fn(u32) -> _),
+            ("slides", 0.0, &slides as &dyn Fn(f32) -> _),
             ("turns", 0.0, &turns),
+            ("approaches", 0.0, &approaches),
             ("slides past a camera that moves", 0.02, &slides),
         ] {
             let [kept, anew] = [true, false].map(|history| error(&with(history), steps, at));

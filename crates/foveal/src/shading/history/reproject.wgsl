@@ -12,6 +12,7 @@
 #import shading/history/told.wgsl
 #import shared/blocks.wgsl
 #import shared/frame.wgsl
+#import shared/identity.wgsl
 #import shared/layers.wgsl
 #import shared/surface.wgsl
 #import shared/environment.wgsl
@@ -46,43 +47,15 @@ const LEAST_RENEWAL: f32 = 1.0 / 512.0;
 // A coarse block is renewed at most by so many samples a frame.
 const MOST_A_BLOCK: f32 = 2.0;
 
-// Pixels between where a surface was and where it would have been at rest, from which on it has moved,
-// and what motion's half precision adds for each pixel.
-const MOVED: f32 = 0.125;
-const MOTION_ROUNDING: f32 = 1.0 / 512.0;
-// Clip space is wrong by this part of the terms that it is the sum of: they round, and so do the
-// vertices' places in the world. Far from the origin that is more than `MOVED`.
-const CLIP_ROUNDING: f32 = 1.0 / 4194304.0;
-
 // Clip space of a place in the frame before.
-struct ClipBefore {
-    at: vec4f,
-    // Sums of its terms' magnitudes.
-    terms: vec4f,
-}
-
-fn clip_before(texel: vec2u, position: vec3f) -> ClipBefore {
+fn clip_before(texel: vec2u, position: vec3f) -> vec4f {
     let left = frame.views[0].previous_clip_from_world;
     let right = frame.views[1].previous_clip_from_world;
     let is_right = view_of(texel) != 0u;
     let x = select(left[0], right[0], is_right) * position.x;
     let y = select(left[1], right[1], is_right) * position.y;
     let z = select(left[2], right[2], is_right) * position.z;
-    let w = select(left[3], right[3], is_right);
-    return ClipBefore(x + y + z + w, abs(x) + abs(y) + abs(z) + abs(w));
-}
-
-// Whether a surface that was at `pixel - motion` in the frame before would have been elsewhere, had
-// it been at rest: other light falls on what moves.
-fn has_moved(texel: vec2u, clip: ClipBefore, pixel: vec2f, motion: vec2f) -> bool {
-    let to_pixels = 0.5 * frame.size / clip.at.w;
-    let at_rest = vec2f(picture_of(texel).low) + clip.at.xy * vec2f(1.0, -1.0) * to_pixels + 0.5 * frame.size;
-    let unsure = CLIP_ROUNDING * (clip.terms.xy + clip.terms.w * abs(clip.at.xy / clip.at.w)) * to_pixels;
-    // In a view that rests what is at rest stays at its pixel, exactly.
-    let view_rests = ((frame.resting_views >> view_of(texel)) & 1u) != 0u;
-    let away = select(abs(pixel - motion - at_rest) - unsure, abs(motion), view_rests);
-    let beyond = away - MOTION_ROUNDING * abs(motion);
-    return max(beyond.x, beyond.y) > MOVED;
+    return x + y + z + select(left[3], right[3], is_right);
 }
 
 // What must agree for a memory to be that of a pixel's surface.
@@ -207,13 +180,14 @@ fn reprojected(texel: vec2u) -> Reprojected {
     let s = unpack_surface(load_words(gbuffer_surface, texel), position);
     let who = load_words(gbuffer_identity, texel).xy;
     let clip_then = clip_before(texel, position);
-    let distance_then = select(clip_then.at.w, view_distance(clip_then.at.z), frame.orthographic != 0u);
+    let distance_then = select(clip_then.w, view_distance(clip_then.z), frame.orthographic != 0u);
     let expected = Expected(s.normal, distance_then, who.x & SEEN_INSTANCE, own.level);
     let picture = picture_of(texel);
     let motion = unpack2x16float(who.y);
     let before = pixel - motion;
-    // Without `||`, which would branch on a uniform alone.
-    let is_other = (told.reset != 0u) | has_changed(position) | has_moved(texel, clip_then, pixel, motion);
+    // Other light falls on what has moved. Without `||`, which would branch on a uniform alone.
+    let has_moved = (who.y & HAS_MOVED) != 0u;
+    let is_other = (told.reset != 0u) | has_changed(position) | has_moved;
     let memory = remember(before, texel, picture, expected, select(4u, 0u, is_other));
 
     let sample = sample_texel(own.block, own.level, 0u);

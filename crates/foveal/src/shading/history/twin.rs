@@ -1,7 +1,7 @@
 //! The CPU twin of what the device carries along and reshades, of one eye.
 
 use foveal_scene::Camera;
-use glam::{IVec2, Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{IVec2, UVec2, Vec2};
 
 use super::passes::HistoryParameters;
 use crate::shading::sample_texel;
@@ -16,9 +16,7 @@ const OWN: u32 = 0x1_0000;
 const DISTANCE: u32 = 0xfffe_0000;
 const SAME_DISTANCE: f32 = 0.02;
 const SAME_NORMAL: f32 = 0.95;
-const MOVED: f32 = 0.125;
-const MOTION_ROUNDING: f32 = 1.0 / 512.0;
-const CLIP_ROUNDING: f32 = 1.0 / 4_194_304.0;
+const HAS_MOVED: u32 = 1;
 const LEAST_RENEWAL: f32 = 1.0 / 512.0;
 const MOST_A_BLOCK: f32 = 2.0;
 
@@ -55,25 +53,6 @@ pub(super) enum Fate {
 /// A pixel's fate, and what it keeps besides light from here on.
 pub(super) type Reprojected = (Fate, u32);
 
-/// Whether a surface moves that was so many pixels away from where it would have been at rest.
-fn moves(away: Vec2, motion: Vec2) -> bool {
-    (away - MOTION_ROUNDING * motion.abs()).max_element() > MOVED
-}
-
-/// By how much clip space is wrong at a place, as a part of the picture's half.
-fn rounding(clip_from_world: &Mat4, position: Vec3, clip: Vec4) -> Vec2 {
-    let m = clip_from_world;
-    let terms = [
-        m.x_axis * position.x,
-        m.y_axis * position.y,
-        m.z_axis * position.z,
-    ];
-    let terms = terms
-        .iter()
-        .fold(m.w_axis.abs(), |sum, term| sum + term.abs());
-    CLIP_ROUNDING * (terms.xy() + terms.w * (clip.xy() / clip.w).abs())
-}
-
 impl Seen {
     fn level(&self, texel: UVec2) -> u32 {
         let across = self.size.x.div_ceil(2);
@@ -102,19 +81,10 @@ impl Seen {
         let pixel = texel.as_vec2() + 0.5;
         let position = position_at(camera, self.size.as_vec2(), pixel, depth);
         let aspect = self.size.x as f32 / self.size.y as f32;
-        let previous_clip_from_world = previous.clip_from_world(aspect);
-        let clip = previous_clip_from_world * position.extend(1.0);
-        let expected = clip.w;
+        let expected = (previous.clip_from_world(aspect) * position.extend(1.0)).w;
         let [who, motion] = self.identity[i];
+        let has_moved = motion & HAS_MOVED != 0;
         let motion = Vec2::from([motion as u16, (motion >> 16) as u16].map(f32_of_half));
-        let has_moved = if previous_clip_from_world == camera.clip_from_world(aspect) {
-            moves(motion.abs(), motion)
-        } else {
-            let to_pixels = 0.5 * self.size.as_vec2() / clip.w;
-            let at_rest = Vec2::new(clip.x, -clip.y) * to_pixels + 0.5 * self.size.as_vec2();
-            let unsure = rounding(&previous_clip_from_world, position, clip) * to_pixels;
-            moves((pixel - motion - at_rest).abs() - unsure, motion)
-        };
         let normal = unit_from_octahedral(self.surface[i][1]);
         let remembered = |place: Vec2| {
             let place = place.as_ivec2();
