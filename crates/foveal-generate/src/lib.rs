@@ -2,7 +2,7 @@
 //!
 //! Everything is deterministic: integer hashes give the chance, and trigonometry is the crate's
 //! own, so that a scene is the same on every machine. [`by_name`] finds a scene by the name that
-//! the command line takes; all other functions give one scene each. Metres, y up, night.
+//! the command line takes; all other functions give one scene each. Metres, y up; night, but for the yard.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may stop at once"))]
@@ -22,6 +22,7 @@ mod registry;
 mod surroundings;
 mod texture;
 mod trig;
+mod yard;
 
 pub use alpha::alpha;
 pub use bench::{materials, materials2};
@@ -34,6 +35,7 @@ pub use materials_grid::materials_grid;
 pub use names::NAMES;
 pub use registry::by_name;
 pub use surroundings::surroundings;
+pub use yard::yard;
 
 #[cfg(test)]
 mod tests;

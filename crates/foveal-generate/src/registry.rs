@@ -37,6 +37,7 @@ pub fn by_name(name: &str) -> Result<Scene, GenerateError> {
         "materials-grid" => crate::materials_grid,
         "alpha" => crate::alpha,
         "lobes" => crate::lobes,
+        "yard" => crate::yard,
         _ => {
             return Err(GenerateError::UnknownScene {
                 name: name.to_owned(),
