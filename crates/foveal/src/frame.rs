@@ -25,6 +25,8 @@ pub(crate) struct ViewUniform {
     pub(crate) cluster_shift_x: f32,
     pub(crate) forward: [f32; 3],
     pub(crate) cluster_shift_y: f32,
+    pub(crate) previous_eye: [f32; 3],
+    pub(crate) previous_half_width: f32,
 }
 
 impl ViewUniform {
@@ -38,6 +40,8 @@ impl ViewUniform {
             cluster_shift_x: cluster_shift[0] as f32,
             forward: forward(&eye.world_from_view).to_array(),
             cluster_shift_y: cluster_shift[1] as f32,
+            previous_eye: previous.position().to_array(),
+            previous_half_width: previous.view_from_ndc()[0],
         }
     }
 }

@@ -19,6 +19,9 @@ struct View {
     // Unit view direction, world space.
     forward: vec3f,
     cluster_shift_y: f32,
+    // Of the frame before: the eye, and half the picture's width at distance 1 (perspective).
+    previous_eye: vec3f,
+    previous_half_width: f32,
 }
 
 struct Frame {

@@ -89,6 +89,8 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             cluster_shift_x,
             forward,
             cluster_shift_y,
+            previous_eye,
+            previous_half_width,
         ]
     );
     assert_same_layout!(

@@ -58,6 +58,41 @@ fn clip_before(texel: vec2u, position: vec3f) -> vec4f {
     return x + y + z + select(left[3], right[3], is_right);
 }
 
+// Part of a highlight's width, the square root of the squared alpha, by which the direction to the
+// eye may turn in a frame where highlights show: mirrored light is kept as that of one direction,
+// and says nothing of highlights that come from beside it. Found by measurement, as what follows.
+const MOST_TURNED: f32 = 0.1;
+// What a turn below that counts as an error.
+const TURN_AS_ERROR: f32 = 2.0;
+// No highlight is narrower.
+const LEAST_SQUARED_ALPHA: f32 = 0.0004;
+// Part of scattered light that a highlight's peak exceeds before it counts.
+const HARDLY_SHOWS: f32 = 0.2;
+
+// By how much the direction to the eye, `v`, has turned since the frame before, as a part of a
+// highlight's width; less where highlights hardly show.
+fn turn_by_width(s: Surface, v: vec3f, before: vec3f) -> f32 {
+    let by = light_factors(s, v);
+    let a2 = max(squared_alpha(s), LEAST_SQUARED_ALPHA);
+    let peak = luminance(by.mirrored) * 0.25 / (PI * a2);
+    let share = saturate(peak / max(luminance(by.scattered), 1e-3) - HARDLY_SHOWS);
+    return distance(v, before) * inverseSqrt(a2) * share;
+}
+
+// Surfaces are taken to be seen no more from the side than by this cosine.
+const LEAST_FACING: f32 = 0.2;
+// By how many times a pixel of the frame before may be larger on a surface than one is now. Slow
+// approach is left to renewal.
+const MOST_LARGER: f32 = 1.19;
+
+// Whether a pixel of the frame before was larger on a surface than one is now, along or across: after
+// a cut to a closer view. `sides`: of a pixel that faces the eye, then and now; `facing`: cosines of
+// the surface to the eye.
+fn was_larger(sides: vec2f, facing: vec2f) -> bool {
+    let seen = max(abs(facing), vec2f(LEAST_FACING));
+    return sides.x * max(seen.x, seen.y) > MOST_LARGER * sides.y * seen.x;
+}
+
 // What must agree for a memory to be that of a pixel's surface.
 struct Expected {
     normal: vec3f,
@@ -180,19 +215,28 @@ fn reprojected(texel: vec2u) -> Reprojected {
     let s = unpack_surface(load_words(gbuffer_surface, texel), position);
     let who = load_words(gbuffer_identity, texel).xy;
     let clip_then = clip_before(texel, position);
-    let distance_then = select(clip_then.w, view_distance(clip_then.z), frame.orthographic != 0u);
+    let is_orthographic = frame.orthographic != 0u;
+    let distance_then = select(clip_then.w, view_distance(clip_then.z), is_orthographic);
+    let is_right = view_of(texel) != 0u;
+    let eye_then = select(frame.views[0].previous_eye, frame.views[1].previous_eye, is_right);
+    let half_width_then = select(frame.views[0].previous_half_width, frame.views[1].previous_half_width, is_right);
+    let half_width = abs(select(frame.views[0].view_from_ndc.x, frame.views[1].view_from_ndc.x, is_right));
+    let v_then = select(normalize(eye_then - position), v, is_orthographic);
+    let sides = vec2f(abs(half_width_then) * clip_then.w, half_width * select(distance, 1.0, is_orthographic));
+    let is_coarser = was_larger(sides, vec2f(dot(s.normal, v_then), dot(s.normal, v)));
     let expected = Expected(s.normal, distance_then, who.x & SEEN_INSTANCE, own.level);
     let picture = picture_of(texel);
     let motion = unpack2x16float(who.y);
     let before = pixel - motion;
     // Other light falls on what has moved. Without `||`, which would branch on a uniform alone.
     let has_moved = (who.y & HAS_MOVED) != 0u;
-    let is_other = (told.reset != 0u) | has_changed(position) | has_moved;
+    let turned = turn_by_width(s, v, v_then);
+    let is_other = (told.reset != 0u) | has_changed(position) | has_moved | is_coarser | (turned > MOST_TURNED);
     let memory = remember(before, texel, picture, expected, select(4u, 0u, is_other));
 
     let sample = sample_texel(own.block, own.level, 0u);
     let is_coarse = own.level > 0u;
-    let is_renewed = is_due(texel, own.level, memory.tile.error);
+    let is_renewed = is_due(texel, own.level, max(memory.tile.error, TURN_AS_ERROR * turned));
     let is_reprojected = memory.is_known && !is_renewed;
     // Shaded by itself; a block's sample is shaded for its block.
     let is_shaded = !is_reprojected && !(is_coarse && (!memory.is_known || all(texel == sample)));

@@ -1,11 +1,16 @@
 //! The CPU twin of what the device carries along and reshades, of one eye.
 
+use std::f32::consts::PI;
+
 use foveal_scene::Camera;
-use glam::{IVec2, UVec2, Vec2};
+use glam::{IVec2, UVec2, Vec2, Vec3};
 
 use super::passes::HistoryParameters;
 use crate::shading::sample_texel;
-use crate::shading::twin::{position_at, unit_from_octahedral, unit_from_square};
+use crate::shading::twin::{
+    Surface, environment_reflectance, luminance, position_at, squared_alpha, to_eye,
+    unit_from_square, unpack_surface,
+};
 use crate::testing::f32_of_half;
 
 /// The constants of `layout.wgsl` and `reproject.wgsl`.
@@ -17,6 +22,12 @@ const DISTANCE: u32 = 0xfffe_0000;
 const SAME_DISTANCE: f32 = 0.02;
 const SAME_NORMAL: f32 = 0.95;
 const HAS_MOVED: u32 = 1;
+const MOST_TURNED: f32 = 0.1;
+const TURN_AS_ERROR: f32 = 2.0;
+const LEAST_SQUARED_ALPHA: f32 = 0.0004;
+const HARDLY_SHOWS: f32 = 0.2;
+const LEAST_FACING: f32 = 0.2;
+const MOST_LARGER: f32 = 1.19;
 const LEAST_RENEWAL: f32 = 1.0 / 512.0;
 const MOST_A_BLOCK: f32 = 2.0;
 
@@ -53,6 +64,21 @@ pub(super) enum Fate {
 /// A pixel's fate, and what it keeps besides light from here on.
 pub(super) type Reprojected = (Fate, u32);
 
+/// `turn_by_width`.
+fn turn_by_width(s: &Surface, v: Vec3, before: Vec3) -> f32 {
+    let a2 = squared_alpha(s).max(LEAST_SQUARED_ALPHA);
+    let peak = luminance(environment_reflectance(s, v)) * 0.25 / (PI * a2);
+    let scattered = luminance((1.0 - s.metallic) * s.base_color / PI);
+    let share = (peak / scattered.max(1e-3) - HARDLY_SHOWS).clamp(0.0, 1.0);
+    v.distance(before) / a2.sqrt() * share
+}
+
+/// `was_larger`.
+fn was_larger(sides: [f32; 2], facing: [f32; 2]) -> bool {
+    let seen = facing.map(|cosine| cosine.abs().max(LEAST_FACING));
+    sides[0] * seen[0].max(seen[1]) > MOST_LARGER * sides[1] * seen[0]
+}
+
 impl Seen {
     fn level(&self, texel: UVec2) -> u32 {
         let across = self.size.x.div_ceil(2);
@@ -81,11 +107,19 @@ impl Seen {
         let pixel = texel.as_vec2() + 0.5;
         let position = position_at(camera, self.size.as_vec2(), pixel, depth);
         let aspect = self.size.x as f32 / self.size.y as f32;
+        let s = unpack_surface(self.surface[i], position);
+        let [v, v_then] = [camera, previous].map(|camera| to_eye(camera, position));
         let expected = (previous.clip_from_world(aspect) * position.extend(1.0)).w;
         let [who, motion] = self.identity[i];
         let has_moved = motion & HAS_MOVED != 0;
         let motion = Vec2::from([motion as u16, (motion >> 16) as u16].map(f32_of_half));
-        let normal = unit_from_octahedral(self.surface[i][1]);
+        let half_width = |camera: &Camera| 1.0 / camera.clip_from_view(aspect).x_axis.x;
+        let sides = [
+            half_width(previous) * expected,
+            half_width(camera) * distance,
+        ];
+        let is_coarser = was_larger(sides, [v_then, v].map(|v| s.normal.dot(v)));
+        let turned = turn_by_width(&s, v, v_then);
         let remembered = |place: Vec2| {
             let place = place.as_ivec2();
             let inside = place.cmpge(IVec2::ZERO).all() && place.as_uvec2().cmplt(self.size).all();
@@ -102,12 +136,14 @@ impl Seen {
             let away = (f32::from_bits((old & DISTANCE) >> 1) - expected).abs();
             let known = told.reset == 0
                 && !has_moved
+                && !is_coarser
+                && turned <= MOST_TURNED
                 && old & AT_ALL != 0
                 && (old ^ who) & INSTANCE == 0
                 && away <= SAME_DISTANCE * expected
                 && (old >> LEVEL_SHIFT & 7) <= level
                 && tile[1] < told.change
-                && then.dot(normal) > SAME_NORMAL;
+                && then.dot(s.normal) > SAME_NORMAL;
             known.then_some((old, tile))
         };
         let place = pixel - motion;
@@ -123,6 +159,7 @@ impl Seen {
         let now = who & INSTANCE | AT_ALL | distance_bits;
         if let Some((old, [error, _])) = found {
             let block = 0.25_f32.powi(level as i32);
+            let error = error.max(TURN_AS_ERROR * turned);
             let haste = (error / told.tolerance).clamp(1.0, MOST_A_BLOCK / told.renewal);
             let share = (block * told.renewal * haste).clamp(LEAST_RENEWAL.min(block), 1.0);
             let order = (texel.x.wrapping_mul(3_242_174_889))
