@@ -60,8 +60,7 @@ int main(void) {
             check(foveal_cull_occluders_remove(occluders, ids[i]));
         }
     }
-    FovealCullStats stats = {0};
-    stats.size = sizeof stats;
+    FovealCullStats stats;
     check(foveal_culler_stats(culler, &stats));
     printf("%d carts, %zu visible; %zu without the first row of %d + 20 houses\n", HOUSES, visible[0], visible[1],
            (int)stats.occluder_models);

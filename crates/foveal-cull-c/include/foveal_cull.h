@@ -12,9 +12,10 @@
  * Errors. Functions return a FovealCullStatus. Noticed are null and misaligned pointers, wrong lengths,
  * arrays for results that overlap the boxes or ids of the same call, numbers that are not finite, ids of
  * removed objects and of other sets, unknown enumerators, structs of another version, and an object that
- * another thread is changing. Not noticed, and undefined as in free(), are destroyed objects and arrays
- * that are shorter than said. A function that fails leaves its
- * result as it was or null, and its object unchanged, unless it says otherwise.
+ * another thread is changing. Not noticed, and undefined as in free(), are destroyed objects, arrays that
+ * are shorter than said, and structs that are smaller than their `size`, or the size given to a function
+ * named _sized, says: up to 4,096 bytes of that are read or written. A function that fails leaves its result
+ * as it was or null, and its object unchanged, unless it says otherwise.
  *
  * Threads. Functions that take const objects may be called from many threads at once. A function that
  * changes an object returns FOVEAL_CULL_BUSY while another call uses it, and so do calls that use an
@@ -254,7 +255,7 @@ typedef struct FovealCullJobs {
 
 /* Stats of a frame. */
 typedef struct FovealCullStats {
-    /* sizeof(FovealCullStats): set it before the call. */
+    /* sizeof(FovealCullStats). */
     uint32_t size;
     /* 0. */
     uint32_t reserved;
@@ -546,8 +547,11 @@ FovealCullStatus foveal_culler_test_occludees(const FovealCuller *culler, const 
  * `count` is width * height. */
 FovealCullStatus foveal_culler_read_depth(const FovealCuller *culler, float *pixels, size_t count);
 
-/* Writes the stats of the last frame. Set `size` before. */
-FovealCullStatus foveal_culler_stats(const FovealCuller *culler, FovealCullStats *out);
+/* Writes the stats of the last frame. `size` in the struct is written, not read. */
+FovealCullStatus foveal_culler_stats_sized(const FovealCuller *culler, FovealCullStats *out, size_t size);
+static inline FovealCullStatus foveal_culler_stats(const FovealCuller *culler, FovealCullStats *out) {
+    return foveal_culler_stats_sized(culler, out, sizeof(FovealCullStats));
+}
 
 /* ---- Occluders that hide nothing ----
  *

@@ -516,7 +516,6 @@ public:
     }
     FovealCullStats stats() const {
         FovealCullStats stats{};
-        stats.size = sizeof stats;
         expect_ok(foveal_culler_stats(culler_.get(), &stats));
         return stats;
     }

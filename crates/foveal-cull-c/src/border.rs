@@ -2,6 +2,7 @@
 #![allow(unsafe_code, reason = "pointers from C; see the SAFETY lines")]
 
 use crate::status::{Fault, FovealCullStatus};
+use core::ops::RangeInclusive;
 use foveal_cull::Visibility;
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError};
 
@@ -230,21 +231,32 @@ pub(crate) unsafe fn sized<T: Plain>(
 }
 
 /// Writes a struct that begins with its size, as far as the caller's version of the header has it.
+/// Sizes outside `allowed` are refused.
 ///
 /// # Safety
 /// The pointer is null, or names as many bytes as the struct's first field says, which can be
 /// written.
 pub(crate) unsafe fn put_sized<T: Plain>(
     pointer: *mut T,
-    least: usize,
+    allowed: RangeInclusive<usize>,
     value: &T,
     name: &str,
 ) -> Result<(), Fault> {
     check(pointer, name)?;
     // SAFETY: not null and aligned; the first field is a u32 that is there in every version.
     let size = unsafe { pointer.cast::<u32>().read() } as usize;
+    if size > *allowed.end() {
+        return Err(wrong_size(size, name));
+    }
     // SAFETY: the caller's word.
-    unsafe { init_sized(pointer, size, least, value, name) }
+    unsafe { init_sized(pointer, size, *allowed.start(), value, name) }
+}
+
+fn wrong_size(size: usize, name: &str) -> Fault {
+    Fault::new(
+        FovealCullStatus::BadStructSize,
+        format!("'{name}' has the size {size}: set it to sizeof"),
+    )
 }
 
 /// Fills a struct that begins with its size, of which the caller's version of the header has `size`
@@ -261,10 +273,7 @@ pub(crate) unsafe fn init_sized<T: Plain>(
 ) -> Result<(), Fault> {
     check(pointer, name)?;
     if !(least..=LARGEST_STRUCT).contains(&size) || !is_whole::<T>(size) {
-        return Err(Fault::new(
-            FovealCullStatus::BadStructSize,
-            format!("'{name}' has the size {size}: set it to sizeof"),
-        ));
+        return Err(wrong_size(size, name));
     }
     let header = size_of::<u32>();
     let known = size.min(size_of::<T>());

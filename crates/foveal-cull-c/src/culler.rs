@@ -268,10 +268,31 @@ pub unsafe extern "C" fn foveal_culler_read_depth(
     })
 }
 
-/// Writes the stats of the last frame.
+/// Writes the stats of the last frame. `size` is the caller's sizeof(FovealCullStats).
 ///
 /// # Safety
-/// `culler` is null or lives; `out` is null or as described.
+/// `culler` is null or lives; `out` is null, or `size` bytes can be written to it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_culler_stats_sized(
+    culler: *const FovealCuller,
+    out: *mut FovealCullStats,
+    size: usize,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            let culler = border::object(culler, "culler")?;
+            let stats = border::read(&culler.0)?.stats();
+            FovealCullStats::put(out, size, &stats)
+        }
+    })
+}
+
+/// The same for programs that were compiled with a header without [`foveal_culler_stats_sized`].
+/// `out` says its own size. Larger sizes than that of their struct are refused.
+///
+/// # Safety
+/// `culler` is null or lives; `out` is null, or can be written as far as its size says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn foveal_culler_stats(
     culler: *const FovealCuller,
@@ -282,7 +303,7 @@ pub unsafe extern "C" fn foveal_culler_stats(
         unsafe {
             let culler = border::object(culler, "culler")?;
             let stats = border::read(&culler.0)?.stats();
-            FovealCullStats::put(out, &stats)
+            FovealCullStats::put_as_said(out, &stats)
         }
     })
 }

@@ -71,6 +71,8 @@ unsafe impl Plain for FovealCullStats {}
 /// Sizes of the first versions: structs may not be smaller. They end with the last field that version
 /// had and stay as they are when fields are added.
 const FIRST_STATS: usize = offset_of!(FovealCullStats, clusters_over_budget) + size_of::<u64>();
+/// Size of the last version before there was `foveal_culler_stats_sized`.
+const LAST_SAID_STATS: usize = offset_of!(FovealCullStats, clusters_not_useful) + size_of::<u64>();
 const FIRST_OPTIONS: usize = offset_of!(FovealCullFrameOptions, deadline_ns) + size_of::<u64>();
 
 impl FovealCullFrameOptions {
@@ -171,13 +173,23 @@ impl FovealCullStats {
         }
     }
 
-    /// Writes stats.
+    /// Writes stats to a struct of `size` bytes.
+    ///
+    /// # Safety
+    /// The pointer is null, or `size` bytes can be written to it.
+    pub(crate) unsafe fn put(to: *mut Self, size: usize, stats: &CullStats) -> Result<(), Fault> {
+        // SAFETY: the caller's word.
+        unsafe { border::init_sized(to, size, FIRST_STATS, &Self::of(stats), "out") }
+    }
+
+    /// Writes stats to a struct that says its own size, as those of headers without
+    /// `foveal_culler_stats_sized` do. Larger sizes than theirs are refused.
     ///
     /// # Safety
     /// The pointer is null, or names as many bytes as the struct says, which can be written.
-    pub(crate) unsafe fn put(to: *mut Self, stats: &CullStats) -> Result<(), Fault> {
+    pub(crate) unsafe fn put_as_said(to: *mut Self, stats: &CullStats) -> Result<(), Fault> {
         // SAFETY: the caller's word.
-        unsafe { border::put_sized(to, FIRST_STATS, &Self::of(stats), "out") }
+        unsafe { border::put_sized(to, FIRST_STATS..=LAST_SAID_STATS, &Self::of(stats), "out") }
     }
 }
 

@@ -11,7 +11,7 @@
 //! numbers that are not finite, ids of removed objects and of other sets, unknown enumerators,
 //! structs of another version, an object that another thread is changing. No panic crosses the
 //! border. What cannot be noticed is the caller's promise: pointers that are neither null nor valid,
-//! objects that were destroyed, and arrays that are shorter than said.
+//! objects that were destroyed, and arrays and structs that are shorter than said.
 //!
 //! Unsafe code is in the modules below, and each block says why it is sound. They only translate:
 //! no algorithm is here.

@@ -217,6 +217,8 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
             null_pointer
         );
         assert_eq!(foveal_culler_stats(culler, null_mut()), null_pointer);
+        let stats = foveal_culler_stats_sized(culler, null_mut(), 80);
+        assert_eq!(stats, null_pointer);
         foveal_cull_mesh_destroy(null_mut());
         foveal_cull_occluders_destroy(null_mut());
         foveal_cull_threads_destroy(null_mut());

@@ -63,19 +63,15 @@ fn structs_of_other_versions_are_taken_if_nothing_is_lost() {
             stats: FovealCullStats::default(),
             more: 9,
         };
-        stats.stats.size = size_of::<NewerStats>() as u32;
-        let to = (&raw mut stats).cast();
-        assert_eq!(foveal_culler_stats(culler, to), Status::Ok);
+        let (to, size) = ((&raw mut stats).cast(), size_of::<NewerStats>());
+        assert_eq!(foveal_culler_stats_sized(culler, to, size), Status::Ok);
         assert_eq!(
             (stats.stats.size, stats.more),
             (size_of::<NewerStats>() as u32, 0)
         );
-        let mut small = FovealCullStats {
-            size: 8,
-            ..Default::default()
-        };
+        let mut small = FovealCullStats::default();
         assert_eq!(
-            foveal_culler_stats(culler, &mut small),
+            foveal_culler_stats_sized(culler, &mut small, 8),
             Status::BadStructSize
         );
         foveal_cull_mesh_destroy(mesh);
@@ -377,11 +373,9 @@ fn a_clock_that_has_run_out_draws_nothing_and_hides_nothing() {
         };
         let done = foveal_culler_rasterize(culler, &view, set, &options, null());
         assert_eq!((done, test(culler)), (Status::Ok, 0));
-        let mut stats = FovealCullStats {
-            size: size_of::<FovealCullStats>() as u32,
-            ..Default::default()
-        };
-        assert_eq!(foveal_culler_stats(culler, &mut stats), Status::Ok);
+        let (mut stats, size) = (FovealCullStats::default(), size_of::<FovealCullStats>());
+        let read = foveal_culler_stats_sized(culler, &mut stats, size);
+        assert_eq!(read, Status::Ok);
         assert_eq!((stats.occluder_models, stats.clusters_over_budget), (1, 1));
         foveal_cull_mesh_destroy(mesh);
         foveal_cull_occluders_destroy(set);

@@ -40,6 +40,10 @@ fn without_inline(code: &str) -> (String, BTreeMap<String, String>) {
     (rest, inline)
 }
 
+/// Functions that the library keeps for programs that were compiled with an earlier header. Its
+/// successor defines a function of the same name.
+const KEPT: [&str; 1] = ["foveal_culler_stats"];
+
 /// The C spelling of a Rust type, with a place for the name.
 fn c_type(rust: &str, name: &str) -> String {
     if let Some(to) = rust.strip_prefix("*const ") {
@@ -87,6 +91,9 @@ fn functions() -> BTreeMap<String, String> {
             found.insert(name.to_owned(), prototype);
         }
     }
+    for kept in KEPT {
+        assert!(found.remove(kept).is_some(), "{kept} is gone");
+    }
     found
 }
 
@@ -130,7 +137,7 @@ fn structs_are_filled_as_far_as_the_caller_s_header_has_them() {
         );
         sized += 1;
     }
-    assert_eq!((sized, inline.len()), (4, 4));
+    assert_eq!((sized, inline.len()), (5, 5));
 }
 
 /// Enumerators with their numbers, from the Rust sources.

@@ -9,7 +9,7 @@ mod objects;
 
 use core::ptr::null_mut;
 use foveal_cull_c::*;
-use objects::view;
+use objects::{culler, view};
 
 use FovealCullStatus as Status;
 
@@ -69,9 +69,32 @@ fn no_more_is_written_than_the_caller_s_struct_has() {
             foveal_cull_threads_jobs_sized(threads, to, size)
         });
         foveal_cull_threads_destroy(threads);
+        let culler = culler();
+        check(72, |to, size| foveal_culler_stats_sized(culler, to, size));
+        foveal_culler_destroy(culler);
     }
 }
 
 /// A view of two eyes of 152 bytes.
 #[cfg(target_pointer_width = "64")]
 const VIEW: usize = 8 + 2 * 152 + 8;
+
+#[test]
+fn stats_of_earlier_headers_write_no_more_than_their_structs_had_whatever_size_they_say() {
+    let culler = culler();
+    for size in [72u32, 80, 88, 200, 4096, 4097, u32::MAX] {
+        let mut memory = Memory([UNTOUCHED; 8192]);
+        memory.0[..4].copy_from_slice(&size.to_ne_bytes());
+        // SAFETY: a live culler and 8192 bytes that can be written.
+        let status = unsafe { foveal_culler_stats(culler, memory.0.as_mut_ptr().cast()) };
+        let expected = if size <= 80 {
+            Status::Ok
+        } else {
+            Status::BadStructSize
+        };
+        assert!(memory.0[80..].iter().all(|b| *b == UNTOUCHED), "{size}");
+        assert_eq!(status, expected, "{size}");
+    }
+    // SAFETY: it is used no more.
+    unsafe { foveal_culler_destroy(culler) };
+}

@@ -108,10 +108,7 @@ fn options_of_the_first_version_know_nothing() {
         set: 0,
         occluder: 0,
     };
-    let mut stats = FovealCullStats {
-        size: size_of::<FovealCullStats>() as u32,
-        ..Default::default()
-    };
+    let mut stats = FovealCullStats::default();
     // SAFETY: live handles, and pointers to variables of the right size.
     unsafe {
         assert_eq!(
@@ -133,7 +130,9 @@ fn options_of_the_first_version_know_nothing() {
             );
             assert_eq!(observed, Status::Ok);
             assert_eq!(foveal_cull_usefulness_learn(known, culler, set), Status::Ok);
-            assert_eq!(foveal_culler_stats(culler, &mut stats), Status::Ok);
+            let size = size_of::<FovealCullStats>();
+            let read = foveal_culler_stats_sized(culler, &mut stats, size);
+            assert_eq!(read, Status::Ok);
             stats.clusters_not_useful
         };
         let old = FovealCullFrameOptions {
