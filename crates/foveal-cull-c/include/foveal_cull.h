@@ -382,7 +382,10 @@ FovealCullStatus foveal_cull_eye_from_matrix(const double *clip_from_world, uint
 FovealCullStatus foveal_cull_eye_from_matrix_f32(const float *clip_from_world, uint32_t depth, FovealCullEye *out);
 
 /* A symmetric perspective eye without a far plane. Position, target and up have three numbers each,
- * world metres. `fov_y_rad` is the vertical field of view, `aspect` width over height. */
+ * world metres. Where the target is the position, the eye looks along -z. `up` need not be perpendicular to
+ * the view direction; where it is parallel to it, another axis is taken. `fov_y_rad` is the vertical field of
+ * view in radians, above 0 and below pi; `aspect` is width over height, above 0; `near_m` is above 0, metres.
+ * Other numbers are FOVEAL_CULL_BAD_VIEW, NaN and infinity FOVEAL_CULL_NOT_FINITE. */
 FovealCullStatus foveal_cull_eye_look_at(const double *position, const double *target, const double *up,
                                          double fov_y_rad, double aspect, double near_m, FovealCullEye *out);
 

@@ -99,7 +99,7 @@ inline Eye eye_from_matrix(const float *clip_from_world, FovealCullDepth depth) 
     return eye;
 }
 
-/// A symmetric perspective eye without a far plane.
+/// A symmetric perspective eye without a far plane. The angle is in radians.
 inline Eye look_at(const Point &position, const Point &target, const Point &up, double fov_y_rad, double aspect,
                    double near_m) {
     Eye eye{};

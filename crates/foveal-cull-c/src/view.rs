@@ -209,7 +209,35 @@ pub unsafe extern "C" fn foveal_cull_eye_from_matrix_f32(
     })
 }
 
-/// A symmetric perspective eye without a far plane.
+/// Whether a lens is one: `fov_y_rad` in radians.
+fn check_lens(fov_y_rad: f64, aspect: f64, near_m: f64, lens: &Projection) -> Result<(), Fault> {
+    let numbers = [[fov_y_rad, aspect, near_m, 0.0], lens.extents()].concat();
+    if !numbers.iter().all(|v| v.is_finite()) {
+        return Err(CullError::NotFinite(Quantity::Projection).into());
+    }
+    let bad = |text: String| Err(Fault::new(FovealCullStatus::BadView, text));
+    if !(0.0 < fov_y_rad && fov_y_rad < core::f64::consts::PI) {
+        return bad(format!(
+            "'fov_y_rad' is {fov_y_rad}: an angle in radians, above 0 and below pi, is needed"
+        ));
+    }
+    for (name, value) in [("aspect", aspect), ("near_m", near_m)] {
+        if value <= 0.0 {
+            return bad(format!("'{name}' is {value}, which must be above 0"));
+        }
+    }
+    let [left, right, bottom, top] = lens.extents();
+    if left < right && bottom < top {
+        Ok(())
+    } else {
+        bad(format!(
+            "'fov_y_rad' {fov_y_rad} and 'aspect' {aspect} show nothing"
+        ))
+    }
+}
+
+/// A symmetric perspective eye without a far plane, along -z where the target is the position. The
+/// angle is above 0 and below pi, the aspect and the near distance are above 0.
 ///
 /// # Safety
 /// `position`, `target` and `up` are null or three numbers each; `out` is null or can be written.
@@ -231,14 +259,10 @@ pub unsafe extern "C" fn foveal_cull_eye_look_at(
             let up = *border::object(up.cast::<[f64; 3]>(), "up")?;
             let frustum = Projection::perspective(fov_y_rad, aspect, near_m, f64::INFINITY);
             let pose = [position, target, up].concat();
-            for (numbers, quantity) in [
-                (&pose[..], Quantity::Pose),
-                (&[fov_y_rad, aspect, near_m], Quantity::Projection),
-            ] {
-                if !numbers.iter().all(|v| v.is_finite()) {
-                    return Err(CullError::NotFinite(quantity).into());
-                }
+            if !pose.iter().all(|v| v.is_finite()) {
+                return Err(CullError::NotFinite(Quantity::Pose).into());
             }
+            check_lens(fov_y_rad, aspect, near_m, &frustum)?;
             let eye = Eye::look_at(position, target, up, frustum);
             border::put(out, FovealCullEye::of(&eye), "out")
         }

@@ -52,6 +52,11 @@ pub enum Projection {
 impl Projection {
     /// A symmetric perspective projection: vertical field of view in radians, width over height,
     /// and the near and far distances in metres (far may be infinite).
+    ///
+    /// The angle is above 0 and below pi, the others are above 0. Nothing is checked here:
+    /// [`Culler::rasterize`](crate::Culler::rasterize) refuses extents that are empty and a near
+    /// distance that is not above 0. Some angles in degrees, 45 for instance, give extents that are
+    /// not empty, and so are not noticed.
     #[must_use]
     pub fn perspective(fov_y_rad: f64, aspect: f64, near_m: f64, far_m: f64) -> Self {
         let top = (fov_y_rad * 0.5).tan();
@@ -163,9 +168,9 @@ impl Eye {
         }
     }
 
-    /// An eye at `position` that looks at `target`, both world metres. `up` need not be
-    /// perpendicular to the view direction; if it is parallel to it, within rounding, another axis
-    /// is taken.
+    /// An eye at `position` that looks at `target`, both world metres; along -z if they are equal.
+    /// `up` need not be perpendicular to the view direction; if it is parallel to it, within
+    /// rounding, another axis is taken.
     #[must_use]
     pub fn look_at(
         position: impl Into<[f64; 3]>,
