@@ -96,12 +96,12 @@ int main() try {
     const auto eye = [](double x) {
         return cull::look_at({x, 0.2, 0}, {x, 0.2, -1}, {0, 1, 0}, 0.9, 1.5, 0.1);
     };
-    const cull::View view(eye(-0.032), eye(0.032), 0.005);
+    const cull::View view = cull::View(eye(-0.032), eye(0.032), 0.005).for_picture(1918, 1279);
 
     Workers workers(3);
     cull::JobSystem jobs(3, [&](std::uint32_t tasks, const cull::JobSystem::Task &task) { workers.run(tasks, task); });
     cull::Threads threads(2);
-    cull::Culler culler(480, 320);
+    cull::Culler culler = cull::Culler::for_picture(1918, 1279);
     std::size_t seen[2] = {0, 0};
     for (int frame = 0; frame < 2; ++frame) {
         culler.rasterize(view, occluders, jobs);

@@ -48,18 +48,19 @@ int main(void) {
     FovealCuller *culler = NULL, *map = NULL;
     static uint8_t seen[CRATES], casters[CRATES];
     look(camera_at, ahead, up, 1.0, 1.6, &camera);
-    check(foveal_culler_create(480, 300, &culler));
+    check(foveal_culler_create_for_picture(1920, 1200, &culler));
+    check(foveal_cull_view_for_picture(&camera, 1920, 1200));
     check(foveal_culler_rasterize(culler, &camera, occluders, NULL, NULL));
     check(foveal_culler_test_boxes(culler, &boxes[0][0], CRATES, NULL, seen));
 
-    /* The sides of the lamp's cube, with one mask and one culler for all of them. The culler has a quarter of a
-     * map's side: its 4x4 samples in a pixel are then the map's texels. */
+    /* The sides of the lamp's cube, with one mask and one culler for all of them. The culler's samples are the
+     * map's texels. The maps must draw the front faces of the wall, with which it hides crates from the lamp. */
     static const double sides[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
     const double lamp_at[3] = {2, 3, -12}, half_pi = 1.5707963267948966;
     FovealCullReceiverMask *mask = NULL;
     int drawn = 0;
     size_t in_maps = 0, cast = 0;
-    check(foveal_culler_create(SHADOW_MAP_PX / 4, SHADOW_MAP_PX / 4, &map));
+    check(foveal_culler_create_for_picture(SHADOW_MAP_PX, SHADOW_MAP_PX, &map));
     for (int side = 0; side < 6; ++side) {
         const double around[3] = {0, side == 2 || side == 3 ? 0 : 1, side == 2 || side == 3 ? 1 : 0};
         FovealCullView light;
@@ -78,7 +79,9 @@ int main(void) {
             continue;
         }
         ++drawn;
-        /* Casters that others hide from the lamp, and then those whose shadows nobody sees. */
+        /* Casters that others hide from the lamp, and then those whose shadows nobody sees. The mask has the map's
+         * own view, the culler the view that ends with whole pixels of its buffer. */
+        check(foveal_cull_view_for_picture(&light, SHADOW_MAP_PX, SHADOW_MAP_PX));
         check(foveal_culler_rasterize(map, &light, occluders, NULL, NULL));
         check(foveal_culler_test_boxes(map, &boxes[0][0], CRATES, NULL, casters));
         for (int i = 0; i < CRATES; ++i) {

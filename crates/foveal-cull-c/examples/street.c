@@ -5,6 +5,9 @@
 #include <stdlib.h>
 
 #define HOUSES 400
+/* The picture, of any size: the buffer has a quarter of it per axis, rounded up. */
+#define WIDTH_PX 1366
+#define HEIGHT_PX 768
 
 static void check(FovealCullStatus status) {
     if (status != FOVEAL_CULL_OK) {
@@ -36,7 +39,7 @@ int main(void) {
         }
     }
     FovealCuller *culler = NULL;
-    check(foveal_culler_create(480, 270, &culler));
+    check(foveal_culler_create_for_picture(WIDTH_PX, HEIGHT_PX, &culler));
 
     /* In each frame: rasterize, then test. The renderer's own matrix makes the view: at (0, 1.7, 0), along
      * -z, 90 degrees wide, reversed depth without a far plane, near plane at 0.1 m. */
@@ -47,6 +50,7 @@ int main(void) {
     FovealCullView view;
     check(foveal_cull_eye_from_matrix_f32(clip_from_world, FOVEAL_CULL_DEPTH_ONE_TO_ZERO, &eye));
     check(foveal_cull_view_init(&eye, &view));
+    check(foveal_cull_view_for_picture(&view, WIDTH_PX, HEIGHT_PX));
     uint8_t results[HOUSES];
     size_t visible[2] = {0, 0};
     for (int frame = 0; frame < 2; ++frame) {

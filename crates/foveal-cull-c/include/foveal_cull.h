@@ -2,8 +2,16 @@
  *
  * Occluders are rasterized into a small occlusion buffer, and boxes are tested against it. What is
  * reported as hidden is hidden: nothing is culled that the pixel centres of a picture of the buffer's
- * size, or of four times its size per axis, would show. A buffer of a quarter of the picture's size per
- * axis therefore fits a picture exactly.
+ * size, or of four times its size per axis, would show.
+ *
+ * Pictures. The buffer has a quarter of the picture's size per axis, rounded up: (width + 3) / 4 by
+ * (height + 3) / 4 pixels. Where a side of the picture is no multiple of 4, the buffer reaches beyond the
+ * picture on the right or at the bottom, and the view must be wider by as much. Otherwise things are culled
+ * that show through slits narrower than a pixel. foveal_culler_create_for_picture makes such a buffer and
+ * foveal_cull_view_for_picture widens the view. The size is that at which the frame is drawn, before any
+ * upscaling. A frame with a temporal jitter needs the view of the matrix that has the jitter: the buffer's
+ * samples are then that frame's. A picture of several samples in a pixel needs a validity radius: a tiny one
+ * holds at every point of the picture.
  *
  * Space. Lengths are metres. Right-handed with y up, eyes look along their own -z; matrices of other
  * worlds are taken by foveal_cull_eye_from_matrix. World positions are double, boxes float relative to
@@ -60,7 +68,8 @@ typedef enum FovealCullStatus {
     FOVEAL_CULL_BAD_ARGUMENT = 3,
     /* A number is NaN or infinite that must be finite. */
     FOVEAL_CULL_NOT_FINITE = 4,
-    /* A buffer side of 0 pixels or of more than 4,096, or a shadow map's of 0 texels or of more than 16,384. */
+    /* A buffer side of 0 pixels or of more than 4,096, or a picture's or a shadow map's of 0 or of more than
+     * 16,384. */
     FOVEAL_CULL_BAD_SIZE = 5,
     /* A view cannot be culled for. */
     FOVEAL_CULL_BAD_VIEW = 6,
@@ -395,6 +404,13 @@ static inline FovealCullStatus foveal_cull_view_init(const FovealCullEye *eye, F
     return foveal_cull_view_init_sized(eye, out, sizeof(FovealCullView));
 }
 
+/* Widens a view of a picture of `width_px` x `height_px` pixels, 1 to 16,384 per side, for a culler of
+ * foveal_culler_create_for_picture with the same size: to the right and downwards, to whole pixels of the
+ * buffer. The samples of the buffer are then the picture's pixel centres. Sides that are multiples of 4 change
+ * nothing. Call it once for each view, after its last eye is set: a second call widens it again. Receiver masks
+ * take the light's view as it was before. */
+FovealCullStatus foveal_cull_view_for_picture(FovealCullView *view, uint32_t width_px, uint32_t height_px);
+
 /* ---- Threads ---- */
 
 /* Starts `count` - 1 threads; the calling thread is the last one. 1 to 256. Threads that the system refuses
@@ -514,8 +530,13 @@ static inline FovealCullStatus foveal_cull_frame_options_init(FovealCullFrameOpt
     return foveal_cull_frame_options_init_sized(options, sizeof(FovealCullFrameOptions));
 }
 
-/* Makes a culler with an occlusion buffer of this size: a quarter of the picture's per axis is the
- * natural choice. 1 to 4,096 pixels per side. */
+/* Makes a culler for a picture of this size, 1 to 16,384 pixels per side: the buffer has a quarter of it per
+ * axis, rounded up. Rasterize with views of foveal_cull_view_for_picture. A shadow map is a picture too. */
+FovealCullStatus foveal_culler_create_for_picture(uint32_t width_px, uint32_t height_px, FovealCuller **out);
+
+/* Makes a culler with an occlusion buffer of this size, 1 to 4,096 pixels per side. Larger buffers report
+ * fewer hidden boxes as visible and take longer. A size that is neither the picture's nor a quarter of it needs
+ * a validity radius, or boxes that show between the samples are culled. */
 FovealCullStatus foveal_culler_create(uint32_t width_px, uint32_t height_px, FovealCuller **out);
 
 /* Drops a culler. Null is nothing. */
@@ -638,9 +659,9 @@ FovealCullStatus foveal_cull_receiver_mask_receive(FovealCullReceiverMask *mask,
 
 /* Leaves out casters: of the boxes that `results` call FOVEAL_CULL_VISIBLE, those outside the shadow map become
  * FOVEAL_CULL_OUTSIDE, and those whose shadows fall on no receiver FOVEAL_CULL_OCCLUDED. Set `results` before:
- * all to FOVEAL_CULL_VISIBLE, or to those of foveal_culler_test_boxes with the light's view by a culler of a
- * quarter of the map's side, which leaves out casters that others hide from the light. Other results stay. A
- * box that is not a volume stays visible. */
+ * all to FOVEAL_CULL_VISIBLE, or to those of foveal_culler_test_boxes with the light's view by a culler of
+ * foveal_culler_create_for_picture for the map, which leaves out casters that others hide from the light. Other
+ * results stay. A box that is not a volume stays visible. */
 FovealCullStatus foveal_cull_receiver_mask_cull(const FovealCullReceiverMask *mask, const float *boxes,
                                                 size_t count, const double *origin, uint8_t *results);
 

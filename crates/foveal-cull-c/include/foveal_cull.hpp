@@ -118,6 +118,12 @@ public:
         view_.eye_count = 2;
         view_.eyes[1] = right;
     }
+    /// The view of a picture of this size, for Culler::for_picture: widened to whole pixels of the buffer.
+    View for_picture(std::uint32_t width_px, std::uint32_t height_px) const {
+        View wide = *this;
+        expect_ok(foveal_cull_view_for_picture(&wide.view_, width_px, height_px));
+        return wide;
+    }
     const FovealCullView *get() const noexcept { return &view_; }
 
 private:
@@ -464,6 +470,12 @@ public:
         expect_ok(foveal_culler_create(width_px, height_px, &culler));
         culler_.reset(culler);
     }
+    /// A culler for a picture of this size. Rasterize with views of View::for_picture.
+    static Culler for_picture(std::uint32_t width_px, std::uint32_t height_px) {
+        FovealCuller *culler = nullptr;
+        expect_ok(foveal_culler_create_for_picture(width_px, height_px, &culler));
+        return Culler(culler);
+    }
     /// Begins a frame on the calling thread.
     void rasterize(const View &view, const Occluders &occluders, const Options &options = default_options()) {
         expect_ok(foveal_culler_rasterize(culler_.get(), view.get(), occluders.get(), &options, nullptr));
@@ -523,6 +535,7 @@ public:
     const FovealCuller *get() const noexcept { return culler_.get(); }
 
 private:
+    explicit Culler(FovealCuller *culler) : culler_(culler) {}
     detail::Handle<FovealCuller, foveal_culler_destroy> culler_;
 };
 

@@ -13,7 +13,7 @@
 //   wait for workers that wait for the first test.
 // - RenderTriangles always returns VISIBLE, which is the safe answer. Clip planes are found without the mask.
 // - The picture of SetResolution is sampled at its own pixel centres, as by MOC; the buffer behind it has
-//   a quarter of its size per axis.
+//   a quarter of its size per axis, rounded up.
 // - A near clip plane of 0 is one of 0.0001.
 // - There are no bins (BinTriangles, RenderTrilist, CullingThreadpool) and no MergeBuffer: SetJobs gives the
 //   frame to a job system. GetImplementation, GetStatistics and TransformVertices are missing too.
@@ -83,7 +83,7 @@ public:
         height_ = height;
         foveal_culler_destroy(culler_);
         culler_ = nullptr;
-        note(foveal_culler_create((width + 3) / 4, (height + 3) / 4, &culler_));
+        note(foveal_culler_create_for_picture(width, height, &culler_));
         dirty_ = true;
     }
     void GetResolution(unsigned int &width, unsigned int &height) const {
@@ -455,15 +455,14 @@ private:
             }
         }
         FovealCullEye eye{};
-        eye.world_from_eye[0] = eye.world_from_eye[4] = eye.world_from_eye[8] = eye.top = 1.0;
-        eye.left = -1.0;
-        // The buffer has whole pixels of four by four of the picture's.
-        eye.right = -1.0 + 2.0 * static_cast<double>((width_ + 3) / 4 * 4) / width_;
-        eye.bottom = 1.0 - 2.0 * static_cast<double>((height_ + 3) / 4 * 4) / height_;
+        eye.world_from_eye[0] = eye.world_from_eye[4] = eye.world_from_eye[8] = 1.0;
+        eye.right = eye.top = 1.0;
+        eye.left = eye.bottom = -1.0;
         eye.near_m = static_cast<double>(used_near());
         eye.far_m = std::numeric_limits<double>::infinity();
         FovealCullView view{};
         return note(foveal_cull_view_init(&eye, &view)) &&
+               note(foveal_cull_view_for_picture(&view, width_, height_)) &&
                note(foveal_culler_rasterize(culler_, &view, occluders_, nullptr, has_jobs_ ? &jobs_ : nullptr));
     }
 

@@ -24,7 +24,7 @@ unsafe impl<T: Plain, const N: usize> Plain for [T; N] {}
 unsafe impl Plain for foveal_cull::Aabb {}
 
 /// Sizes above this are no size of a struct, but memory that was not initialized.
-const LARGEST_STRUCT: usize = 4096;
+pub(crate) const LARGEST_STRUCT: usize = 4096;
 
 /// Whether a version of `T` may have this size: others end within a field.
 fn is_whole<T>(size: usize) -> bool {

@@ -54,6 +54,25 @@ pub unsafe extern "C" fn foveal_culler_create(
     guard(|| unsafe { border::give(out, make) })
 }
 
+/// Makes a culler for a picture of this size: the buffer has a quarter of it per axis, rounded up.
+///
+/// # Safety
+/// `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_culler_create_for_picture(
+    width_px: u32,
+    height_px: u32,
+    out: *mut *mut FovealCuller,
+) -> FovealCullStatus {
+    let make = || {
+        view::check_picture(width_px, height_px)?;
+        let culler = Culler::for_picture(width_px, height_px)?;
+        Ok(FovealCuller(RwLock::new(culler)))
+    };
+    // SAFETY: the caller's word.
+    guard(|| unsafe { border::give(out, make) })
+}
+
 /// Drops a culler. Null is nothing.
 ///
 /// # Safety

@@ -3,7 +3,9 @@
 
 use crate::border::{self, Plain};
 use crate::status::{Fault, FovealCullStatus, guard};
-use foveal_cull::{Affine, ClipDepth, CullError, Eye, Matrix4, Projection, Quantity, View};
+use foveal_cull::{
+    Affine, ClipDepth, CullError, Eye, MAX_SIDE_PX, Matrix4, Projection, Quantity, View,
+};
 
 /// The depths of the near and the far plane in clip space, z / w.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,26 +144,55 @@ impl FovealCullEye {
     }
 }
 
+impl FovealCullView {
+    /// Reads a view as it is.
+    ///
+    /// # Safety
+    /// The pointer is null, or names as many bytes as the struct says.
+    unsafe fn read(pointer: *const Self) -> Result<Self, Fault> {
+        let default = Self {
+            size: 0,
+            eye_count: 0,
+            eyes: [FovealCullEye::NONE; 2],
+            validity_radius_m: 0.0,
+        };
+        // SAFETY: the caller's word.
+        unsafe { border::sized(pointer, FIRST_VIEW, default, "view") }
+    }
+
+    fn view(&self) -> Result<View, Fault> {
+        let first = self.eyes[0].eye()?;
+        let eyes = match self.eye_count {
+            1 => View::mono(first),
+            2 => View::stereo(first, self.eyes[1].eye()?),
+            _ => return Err(Fault::argument("'eye_count' is neither 1 nor 2")),
+        };
+        Ok(eyes.with_validity_radius(self.validity_radius_m))
+    }
+}
+
 /// Reads a view.
 ///
 /// # Safety
 /// The pointer is null, or names as many bytes as the struct says.
 pub(crate) unsafe fn view(pointer: *const FovealCullView) -> Result<View, Fault> {
-    let default = FovealCullView {
-        size: 0,
-        eye_count: 0,
-        eyes: [FovealCullEye::NONE; 2],
-        validity_radius_m: 0.0,
-    };
     // SAFETY: the caller's word.
-    let view = unsafe { border::sized(pointer, FIRST_VIEW, default, "view") }?;
-    let first = view.eyes[0].eye()?;
-    let eyes = match view.eye_count {
-        1 => View::mono(first),
-        2 => View::stereo(first, view.eyes[1].eye()?),
-        _ => return Err(Fault::argument("'eye_count' is neither 1 nor 2")),
-    };
-    Ok(eyes.with_validity_radius(view.validity_radius_m))
+    unsafe { FovealCullView::read(pointer) }?.view()
+}
+
+/// Whether a culler's buffer can fit a picture.
+pub(crate) fn check_picture(width_px: u32, height_px: u32) -> Result<(), Fault> {
+    let most = 4 * MAX_SIDE_PX;
+    if [width_px, height_px]
+        .iter()
+        .all(|side| (1..=most).contains(side))
+    {
+        return Ok(());
+    }
+    Err(Fault::new(
+        FovealCullStatus::BadSize,
+        format!("picture of {width_px} x {height_px} pixels: each side must be 1 to {most} pixels"),
+    ))
 }
 
 fn from_matrix(matrix: Matrix4, depth: u32) -> Result<FovealCullEye, Fault> {
@@ -291,5 +322,31 @@ pub unsafe extern "C" fn foveal_cull_view_init_sized(
             };
             border::init_sized(out, size, FIRST_VIEW, &view, "out")
         }
+    })
+}
+
+/// Widens a view of a picture, for a culler of `foveal_culler_create_for_picture`.
+///
+/// # Safety
+/// `view` is null, or names as many bytes as the struct says, which can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_view_for_picture(
+    view: *mut FovealCullView,
+    width_px: u32,
+    height_px: u32,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        let mut changed = unsafe { FovealCullView::read(view) }?;
+        check_picture(width_px, height_px)?;
+        let wide = changed.view()?.for_picture(width_px, height_px);
+        let eyes = [Some(wide.eye), wide.second_eye];
+        for (eye, wide) in changed.eyes.iter_mut().zip(eyes.iter().flatten()) {
+            let [_, right, bottom, _] = wide.projection.extents();
+            (eye.right, eye.bottom) = (right, bottom);
+        }
+        let allowed = FIRST_VIEW..=border::LARGEST_STRUCT;
+        // SAFETY: the caller's word.
+        unsafe { border::put_sized(view, allowed, &changed, "view") }
     })
 }

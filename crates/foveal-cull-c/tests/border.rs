@@ -219,6 +219,10 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
         assert_eq!(foveal_culler_stats(culler, null_mut()), null_pointer);
         let stats = foveal_culler_stats_sized(culler, null_mut(), 80);
         assert_eq!(stats, null_pointer);
+        let create = foveal_culler_create_for_picture;
+        assert_eq!(create(32, 32, null_mut()), null_pointer);
+        let widened = foveal_cull_view_for_picture(null_mut(), 32, 32);
+        assert_eq!(widened, null_pointer);
         foveal_cull_mesh_destroy(null_mut());
         foveal_cull_occluders_destroy(null_mut());
         foveal_cull_threads_destroy(null_mut());

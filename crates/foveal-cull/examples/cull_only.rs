@@ -37,8 +37,9 @@ fn main() -> Result<(), CullError> {
         1.0,
         16.0 / 9.0,
         0.1,
-    );
-    let mut culler = Culler::new(480, 270)?;
+    )
+    .for_picture(1920, 1080);
+    let mut culler = Culler::for_picture(1920, 1080)?;
     culler.rasterize(&view, &occluders, &FrameOptions::default(), &SingleThread)?;
     let mut results = vec![Visibility::Visible; things.len()];
     culler.query_tree(&tree, &mut results)?;

@@ -21,11 +21,12 @@ use crate::raster::select::Choice;
 use crate::simd::InstructionSet;
 use crate::stats::CullStats;
 use crate::threads::Threads;
-use crate::view::View;
+use crate::view::{PICTURE_PX, View};
 use std::sync::Mutex;
 
 /// Most bands of a frame.
 const MAX_BANDS: usize = 64;
+const _: () = assert!(PICTURE_PX == SAMPLES, "a sample in each pixel of a picture");
 
 /// Rasterizes the occluders of a frame, and answers queries about it.
 ///
@@ -70,9 +71,11 @@ pub(crate) struct Drawn<'a> {
 impl Culler {
     /// A culler with an occlusion buffer of `width_px` x `height_px` pixels.
     ///
-    /// A quarter of the picture's size per axis is the natural choice: coverage is sampled 4x4 per
-    /// pixel, which are then the picture's own pixel centres. Larger buffers report
-    /// fewer hidden boxes as visible and take longer.
+    /// The natural size is that of [`for_picture`](Self::for_picture). The picture's own size is as
+    /// safe: fewer hidden boxes are reported as visible, and a frame takes longer. With other sizes
+    /// boxes may be reported hidden that show between the buffer's samples, unless the view has a
+    /// [validity radius](View::with_validity_radius). So may they with a quarter of a size that is
+    /// no multiple of 4, if it is rounded down.
     ///
     /// # Errors
     /// [`CullError::BadSize`] for a side of 0 or of more than [`MAX_SIDE_PX`] pixels.
@@ -97,6 +100,20 @@ impl Culler {
             drawing_ns: 0,
             bands_recorded: None,
         })
+    }
+
+    /// A culler for a picture of `width_px` x `height_px` pixels, or for a shadow map of so many
+    /// texels: the buffer has a quarter of that per axis, rounded up. Rasterize with the view of
+    /// [`View::for_picture`], which widens it to the buffer's last pixels. The buffer's 4x4 samples
+    /// in a pixel are then the picture's own pixel centres.
+    ///
+    /// # Errors
+    /// [`CullError::BadSize`] for a side of 0 or of more than four times [`MAX_SIDE_PX`] pixels.
+    pub fn for_picture(width_px: u32, height_px: u32) -> Result<Self, CullError> {
+        Self::new(
+            width_px.div_ceil(PICTURE_PX),
+            height_px.div_ceil(PICTURE_PX),
+        )
     }
 
     /// Forces an instruction set. All give equal results; this is for tests and measurements. One

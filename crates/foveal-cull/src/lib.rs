@@ -6,8 +6,9 @@
 //! # The promise
 //! No box is reported hidden that is visible at a pixel centre of a picture of the buffer's size,
 //! or of four times its size per axis. A box that shows only between these points may be reported
-//! hidden. A buffer of a quarter of the picture's size per axis therefore fits a picture exactly.
-//! [`View::with_validity_radius`] with a tiny radius holds at every point of a picture of any size.
+//! hidden. [`Culler::for_picture`] and [`View::for_picture`] fit buffer and view to a picture of
+//! any size, so that its pixel centres are those points. [`View::with_validity_radius`] with a tiny
+//! radius holds at every point of the picture.
 //!
 //! How: coverage is sampled on a 4x4 grid in every pixel. A pixel hides only where every sample is
 //! covered, at the depth of the farthest.
@@ -27,6 +28,19 @@
 //! The interface takes plain numbers: arrays, and whatever turns into them, such as vectors of glam,
 //! nalgebra or mint in any version. Matrices are column-major. An engine's own `clip_from_world`
 //! matrix makes a view by [`View::from_clip_from_world`], for any depth range and either handedness.
+//!
+//! # Size of the picture
+//! The buffer has a quarter of the picture's size per axis, rounded up: `width.div_ceil(4)` by
+//! `height.div_ceil(4)` pixels. Where a side of the picture is no multiple of 4, the buffer reaches
+//! beyond the picture on the right or at the bottom, and the view must be wider by as much.
+//! Otherwise the samples are not the pixel centres, and what shows through slits narrower than a
+//! pixel may be reported hidden. [`Culler::for_picture`] makes the buffer, [`View::for_picture`]
+//! widens the view.
+//!
+//! - Upscaling: the size is that at which the frame is drawn.
+//! - Temporal anti-aliasing: the view is that of the matrix with the frame's jitter, so that the
+//!   samples are those of the frame; or it has a validity radius.
+//! - Multisampling: the view has a validity radius.
 //!
 //! # A static level
 #![doc = include_str!("../pictures/static_level.svg")]
@@ -48,12 +62,15 @@
 //! ];
 //! let origin = [0.0; 3];
 //! let tree = OccludeeTree::build(&boxes, origin);
-//! let mut culler = Culler::new(640, 360)?;
+//! // The picture's size in pixels: any.
+//! let (width, height) = (1366, 768);
+//! let mut culler = Culler::for_picture(width, height)?;
 //! let mut results = [Visibility::Visible; 3];
 //!
 //! // In each frame: rasterize, then query. The eye is at the origin and looks along -z.
 //! let [eye, target, up] = [[0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]];
-//! let view = View::perspective(eye, target, up, 1.0, 16.0 / 9.0, 0.1);
+//! let aspect = f64::from(width) / f64::from(height);
+//! let view = View::perspective(eye, target, up, 1.0, aspect, 0.1).for_picture(width, height);
 //! culler.rasterize(&view, &occluders, &FrameOptions::default(), &SingleThread)?;
 //! culler.query_tree(&tree, &mut results)?;
 //! let expected = [Visibility::Occluded, Visibility::Visible, Visibility::Outside];
@@ -192,9 +209,9 @@
 //! let side = View::mono(Eye::look_at(lamp, [9.0, 1.0, -8.5], [0.0, 1.0, 0.0], side));
 //! let mut mask = ReceiverMask::new(&side, 512)?;
 //! mask.receive(&things, origin, &seen)?;
-//! // A quarter of the map's side: the culler's 4x4 samples in a pixel are then the map's texels.
-//! let mut map = Culler::new(512 / 4, 512 / 4)?;
-//! map.rasterize(&side, &occluders, &options, &SingleThread)?;
+//! // The culler's samples are the map's texels.
+//! let mut map = Culler::for_picture(512, 512)?;
+//! map.rasterize(&side.for_picture(512, 512), &occluders, &options, &SingleThread)?;
 //! let mut casters = [Visibility::Visible; 4];
 //! map.query(&things, origin, &mut casters)?;
 //! mask.cull(&things, origin, &mut casters)?;
@@ -258,7 +275,8 @@
 //!     0.0, 0.0, -0.2, 0.0,
 //! ];
 //! let view = View::from_clip_from_world(clip_from_world, ClipDepth::MinusOneToOne)?;
-//! let mut culler = Culler::new(1280 / 4, 720 / 4)?;
+//! let view = view.for_picture(1280, 720);
+//! let mut culler = Culler::for_picture(1280, 720)?;
 //!
 //! // In each frame: half a millisecond for the occluders.
 //! let clock = || (now_ms() * 1e6) as u64;

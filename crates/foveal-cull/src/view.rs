@@ -123,6 +123,31 @@ impl Projection {
         matches!(self, Self::Orthographic { .. })
     }
 
+    /// Wider to the right and downwards, to whole buffer pixels of a picture of so many pixels.
+    fn for_picture(mut self, width_px: u32, height_px: u32) -> Self {
+        let beyond = |px: u32| {
+            let rest = (PICTURE_PX - px % PICTURE_PX) % PICTURE_PX;
+            f64::from(rest) / f64::from(px)
+        };
+        let (Self::Perspective {
+            left,
+            right,
+            bottom,
+            top,
+            ..
+        }
+        | Self::Orthographic {
+            left,
+            right,
+            bottom,
+            top,
+            ..
+        }) = &mut self;
+        *right += (*right - *left) * beyond(width_px);
+        *bottom -= (*top - *bottom) * beyond(height_px);
+        self
+    }
+
     pub(crate) fn check(&self) -> Result<(), CullError> {
         let [l, r, b, t] = self.extents();
         let [near, far] = self.near_far_m();
@@ -143,6 +168,9 @@ impl Projection {
         Err(CullError::BadView(cause))
     }
 }
+
+/// Pixels of a picture along each side of a buffer's pixel: the samples there.
+pub(crate) const PICTURE_PX: u32 = 4;
 
 /// Sine of the angle between `up` and the view direction up to which they count as parallel. The
 /// axes of a pose are perpendicular to some 1e-16 over the sine.
@@ -266,12 +294,55 @@ impl View {
     /// The same view with results that hold while each eye moves less than `radius_m` metres.
     ///
     /// Any radius above zero, a thousandth of a millimetre for instance, also makes them hold at
-    /// every point of the picture, between the buffer's samples too. Rasterizing then takes 1.2 to
-    /// 1.7 times as long from inside a level, and 4 to 18 % of the hidden boxes more are kept.
+    /// every point of the picture, between the buffer's samples too: for pictures of several
+    /// samples in a pixel, and for several frames of a temporal jitter at once. Rasterizing then
+    /// takes 1.2 to 1.7 times as long from inside a level, and 4 to 18 % of the hidden boxes more
+    /// are kept.
     #[must_use]
     pub fn with_validity_radius(self, radius_m: f64) -> Self {
         Self {
             validity_radius_m: radius_m,
+            ..self
+        }
+    }
+
+    /// The same view for a culler that was made by
+    /// [`Culler::for_picture`](crate::Culler::for_picture) with the same size, in pixels of the
+    /// picture. This view shows the picture and nothing beside it. Where a side of the picture is no
+    /// multiple of 4, the buffer reaches beyond the picture on the right or at the bottom, and the
+    /// result is wider by as much, for each eye. The buffer's samples are then the picture's pixel
+    /// centres; without that, boxes may be reported hidden that show through slits narrower than a
+    /// pixel.
+    ///
+    /// Call it once: a second call widens the view again. A [`ReceiverMask`](crate::ReceiverMask)
+    /// takes the light's view as it was before this call. For a side of 0 the result has extents
+    /// that are no numbers, which [`Culler::rasterize`](crate::Culler::rasterize) refuses.
+    ///
+    /// ```
+    /// use foveal_cull::*;
+    ///
+    /// let mut culler = Culler::for_picture(1366, 768)?;
+    /// assert_eq!(culler.size(), (342, 192));
+    /// let aspect = 1366.0 / 768.0;
+    /// let view = View::perspective([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0], 1.0, aspect, 0.1);
+    /// let view = view.for_picture(1366, 768);
+    /// let options = FrameOptions::default();
+    /// culler.rasterize(&view, &OccluderSet::new(), &options, &SingleThread)?;
+    ///
+    /// // The buffer has 4 * 342 samples side by side, two more than the picture has pixels.
+    /// let [left, right, bottom, top] = view.eye.projection.extents();
+    /// assert!(((right - left) / (top - bottom) - 1368.0 / 768.0).abs() < 1e-9);
+    /// # Ok::<(), CullError>(())
+    /// ```
+    #[must_use]
+    pub fn for_picture(self, width_px: u32, height_px: u32) -> Self {
+        let wide = |eye: Eye| Eye {
+            projection: eye.projection.for_picture(width_px, height_px),
+            ..eye
+        };
+        Self {
+            eye: wide(self.eye),
+            second_eye: self.second_eye.map(wide),
             ..self
         }
     }

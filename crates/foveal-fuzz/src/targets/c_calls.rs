@@ -312,7 +312,7 @@ impl World {
                 }
             }
         }
-        let view = FovealCullView {
+        let mut view = FovealCullView {
             size: size_of::<FovealCullView>() as u32,
             eye_count: 1 + r.below(8) as u32 / 6,
             eyes,
@@ -326,6 +326,12 @@ impl World {
             run: Some(run_some),
             wake: None,
         };
+        if r.one_in(3) {
+            let (width, height) = (r.below(70) as u32, r.below(70) as u32);
+            // SAFETY: a struct of this version.
+            let status = unsafe { foveal_cull_view_for_picture(&mut view, width, height) };
+            self.note(status);
+        }
         // SAFETY: live handles; structs of this version; lists as long as said.
         unsafe {
             foveal_cull_frame_options_init_sized(
