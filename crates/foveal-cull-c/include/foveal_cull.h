@@ -621,7 +621,12 @@ FovealCullStatus foveal_cull_usefulness_learn(FovealCullUsefulness *usefulness, 
  * view shows, as long as lookups read no farther than the reach, compare planar depth texel by texel, and
  * stay within one map. Places before the near plane, beyond the far plane and beside the map have no shadow
  * here. Give a bias towards the light, and depth steps above a ten thousandth of the distance, as metres of
- * reach; filters across the seams of a cube need a wider view. */
+ * reach; filters across the seams of a cube need a wider view.
+ *
+ * A culler that looks from a light leaves out casters behind occluders. The map must then draw the faces that
+ * occluders hide with: front faces, and both faces of meshes that are baked two-sided. A map of back faces only
+ * does not hold a wall that has no back, and the shadow of what is behind the wall is lost: for such a map bake
+ * the light's occluders one-sided and from closed meshes. */
 
 /* Makes an empty mask for a square shadow map of `shadow_map_px` texels per side, 1 to 16,384, as a light sees
  * it: one view for a spot light or a cascade, six for a point light. A second eye and a validity radius of the

@@ -180,6 +180,11 @@
 //! sees. A map without a receiver need not be drawn. A light is left out as a whole where the camera's
 //! culler hides its range: query a box around it.
 //!
+//! The shadow map must draw the faces that occluders hide with: front faces, and both faces of
+//! occluders that are baked [two-sided](BakeOptions::two_sided). A map of back faces only does not
+//! hold a wall that has no back, and the shadow of what is behind the wall is lost. For such a map
+//! bake the light's occluders one-sided and from closed meshes.
+//!
 #![doc = include_str!("../pictures/receivers.svg")]
 //!
 //! ```

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Object, Random, eye, occluders, scene};
+use common::{Object, Random, Scene, eye, occluders, scene};
 use foveal_cull::Visibility::{Occluded, Outside, Visible};
 use foveal_cull::reference::Reference;
 use foveal_cull::{
@@ -28,11 +28,30 @@ fn bounds_of(object: &Object) -> Aabb {
     Aabb::new(low.as_vec3() - 1e-5, high.as_vec3() + 1e-5)
 }
 
+/// The faces that a shadow map draws.
+#[derive(Clone, Copy)]
+enum Faces {
+    Both,
+    /// Front faces, and both of two-sided casters.
+    Occluding,
+    Back,
+}
+
 /// The depths of a shadow map of the casters that count: 0 where there is none, rising to the light.
-fn shadow_map<'a>(light: &Eye, casters: impl Iterator<Item = &'a Object>) -> Vec<f32> {
+fn shadow_map<'a>(
+    light: &Eye,
+    casters: impl Iterator<Item = &'a Object>,
+    faces: Faces,
+) -> Vec<f32> {
     let mut map = Reference::new(light, SIDE, SIDE).unwrap();
     for o in casters {
-        map.add(&o.positions, &o.indices, o.transform, true);
+        let (mut indices, mut both) = (o.indices.clone(), o.two_sided);
+        match faces {
+            Faces::Both => both = true,
+            Faces::Occluding => {}
+            Faces::Back => indices.reverse(),
+        }
+        map.add(&o.positions, &indices, o.transform, both);
     }
     map.finish();
     map.depth().to_vec()
@@ -100,12 +119,12 @@ fn what_is_left_out_changes_no_lookup_for_a_place_that_is_seen() {
         mask.receive(&scene.boxes, DVec3::ZERO, &seen).unwrap();
         mask.cull(&casters, DVec3::ZERO, &mut results).unwrap();
 
-        let all = shadow_map(&light, scene.objects.iter());
         let visible = scene.objects.iter().zip(&results);
-        let fewer = shadow_map(
-            &light,
-            visible.filter(|(_, v)| v.is_visible()).map(|(o, _)| o),
-        );
+        let visible = visible.filter(|(_, v)| v.is_visible()).map(|(o, _)| o);
+        let maps = [Faces::Both, Faces::Occluding].map(|faces| {
+            let all = shadow_map(&light, scene.objects.iter(), faces);
+            [all, shadow_map(&light, visible.clone(), faces)]
+        });
         for (bounds, _) in scene
             .boxes
             .iter()
@@ -120,10 +139,12 @@ fn what_is_left_out_changes_no_lookup_for_a_place_that_is_seen() {
                     continue;
                 };
                 assert!(!mask.is_empty(), "{seed}: {bounds:?}");
-                let both = [&all, &fewer].map(|map| shadows(map, at, reach as i64));
-                assert_eq!(both[0], both[1], "{seed}: {bounds:?} {place}");
+                for maps in &maps {
+                    let [all, fewer] = maps.each_ref().map(|m| shadows(m, at, reach as i64));
+                    assert_eq!(all, fewer, "{seed}: {bounds:?} {place}");
+                    shaded += usize::from(all.iter().any(|s| *s));
+                }
                 looked += 1;
-                shaded += usize::from(both[0].iter().any(|s| *s));
             }
         }
         for (after, before) in results.iter().zip(&by_light) {
@@ -137,6 +158,58 @@ fn what_is_left_out_changes_no_lookup_for_a_place_that_is_seen() {
         left_out > 60 && hidden > 10 && kept > 100 && looked > 5_000 && shaded > 1_000,
         "{left_out} {hidden} {kept} {looked} {shaded}"
     );
+}
+
+#[test]
+fn a_map_of_back_faces_keeps_the_shadows_behind_closed_occluders_only() {
+    let view = side_of_a_lamp();
+    let corners = |[near, far]: [f32; 2]| {
+        let corner = |i: u8| {
+            let side = |bit: u8| if i >> bit & 1 == 0 { -3.0 } else { 3.0 };
+            Vec3::new(side(0), side(1), if i < 4 { far } else { near })
+        };
+        (0..8).map(corner).collect::<Vec<_>>()
+    };
+    let quads = |of: &[[u32; 4]]| {
+        let triangles = of.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]);
+        triangles.collect::<Vec<_>>()
+    };
+    // A wall whose front looks at the lamp, and a box with the same front.
+    let front = [4, 5, 7, 6];
+    let rest = [
+        [0, 2, 3, 1],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+    ];
+    let closed = [&[front][..], &rest[..]].concat();
+    for (faces, keeps) in [(&[front][..], false), (&closed[..], true)] {
+        let wall = Object {
+            positions: corners([-4.0, -4.5]),
+            indices: quads(faces),
+            transform: glam::DAffine3::IDENTITY,
+            two_sided: false,
+        };
+        let scene = Scene {
+            objects: vec![wall],
+            boxes: Vec::new(),
+            origin: DVec3::ZERO,
+        };
+        let mut culler = Culler::for_picture(SIDE, SIDE).unwrap();
+        let (view, options) = (view.for_picture(SIDE, SIDE), FrameOptions::default());
+        let set = occluders(&scene, &[0]);
+        (culler.rasterize(&view, &set, &options, &SingleThread)).unwrap();
+        let mut behind = [Visible];
+        let crate_behind = around([0.0, 0.0, -7.0], 0.5);
+        (culler.query(&[crate_behind], [0.0; 3], &mut behind)).unwrap();
+        assert_eq!(behind, [Occluded], "left out of the map");
+        let at = lookup(&view.eye, DVec3::new(0.1, 0.1, -9.0)).unwrap();
+        for (drawn, expected) in [(Faces::Occluding, true), (Faces::Back, keeps)] {
+            let map = shadow_map(&view.eye, scene.objects.iter(), drawn);
+            assert_eq!(shadows(&map, at, 0), [expected]);
+        }
+    }
 }
 
 fn side_of_a_lamp() -> View {

@@ -183,8 +183,14 @@ impl ReceiverMask {
     /// become [`Outside`](Visibility::Outside), and those whose shadows fall on no receiver
     /// [`Occluded`](Visibility::Occluded). Other results stay, so that those of
     /// [`Culler::query`](crate::Culler::query) with the light's view go in: casters that others hide
-    /// from the light. That culler must have a quarter of the map's side, so that its samples are the
-    /// map's texels. Boxes that are not volumes stay visible.
+    /// from the light. That culler must be made by
+    /// [`Culler::for_picture`](crate::Culler::for_picture) with the map's side, and its view by
+    /// [`View::for_picture`], so that its samples are the map's texels. Boxes that are not volumes
+    /// stay visible.
+    ///
+    /// The map must draw the faces that the culler's occluders hide with: front faces, and both
+    /// faces of two-sided ones. For a map of back faces only the occluders must be one-sided and
+    /// closed, or shadows are lost.
     ///
     /// What lies before the light's near plane casts no shadow here: let the near plane lie before
     /// all casters, also where the shadow map is drawn with depth clamp.
