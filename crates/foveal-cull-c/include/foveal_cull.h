@@ -304,7 +304,7 @@ const char *foveal_cull_status_text(int32_t status);
  * with the final zero. Returns the bytes that all of it needs. `text` may be null. */
 size_t foveal_cull_last_error(char *text, size_t size);
 
-/* ---- Meshes: bake when a level loads, about 0.8 microseconds per triangle ---- */
+/* ---- Meshes: bake when a level loads, about 0.8 microseconds per triangle, 0.5 without adjacency ---- */
 
 /* Fills a source with defaults: one-sided, with adjacency, 32-bit indices, stride 12, no triangles. */
 FovealCullStatus foveal_cull_mesh_source_init_sized(FovealCullMeshSource *source, size_t size);
