@@ -12,28 +12,28 @@ use foveal_scene::{AlphaMode, Camera, Environment, Light, LightKind, Material, S
 /// Metres from one part of the yard to the next.
 const APART_M: f32 = 16.0;
 
-/// Sunlight through a fence onto a lawn, sunlight through leaves onto ground and wall, and a dark
+/// Sunlight through a fence onto the ground, sunlight through leaves onto ground and wall, and a dark
 /// hall whose polished floor and hammered plate mirror 24 lamps. Cameras: `fence`, `fence low`,
 /// `leaves`, `leaves wall`, `floor`, `floor low`, `plate`.
 #[must_use]
 pub fn yard() -> Scene {
     let mut scene = SceneBuilder::new("yard");
-    let stone = scene.material(plain("stone", [0.75, 0.72, 0.66], 0.9));
+    let stone = scene.material(plain("stone", [0.5, 0.48, 0.44], 0.9));
     add_fence(&mut scene, stone);
     add_leaves(&mut scene, stone);
     add_hall(&mut scene, stone);
     scene.light(Light {
         kind: LightKind::Directional,
         color: Vec3::new(1.0, 0.97, 0.9),
-        intensity: 6.0,
+        intensity: 3.5,
         position: Vec3::ZERO,
         direction: Vec3::new(0.38, -0.72, -0.58).normalize(),
         range_m: None,
         node: None,
     });
     for (name, part, eye, target) in [
-        ("fence", 0.0, [0.0, 1.6, 4.0], [0.0, 0.3, -1.0]),
-        ("fence low", 0.0, [1.0, 0.4, 2.0], [0.0, 0.2, -1.5]),
+        ("fence", 0.0, [0.0, 1.6, -5.5], [0.0, 0.3, -1.0]),
+        ("fence low", 0.0, [1.0, 0.5, -4.0], [0.0, 0.2, -0.7]),
         ("leaves", 1.0, [0.0, 1.6, 1.5], [0.0, 0.0, -2.5]),
         ("leaves wall", 1.0, [2.0, 1.6, 0.0], [-1.0, 2.0, -6.0]),
         ("floor", 2.0, [0.0, 1.6, 5.0], [0.0, 0.4, -3.0]),
@@ -47,9 +47,9 @@ pub fn yard() -> Scene {
     }
     let mut scene = scene.finish();
     scene.environment = Environment {
-        zenith: Vec3::new(0.25, 0.38, 0.65),
-        horizon: Vec3::new(0.55, 0.58, 0.62),
-        nadir: Vec3::new(0.12, 0.11, 0.1),
+        zenith: Vec3::new(0.15, 0.23, 0.4),
+        horizon: Vec3::new(0.3, 0.32, 0.35),
+        nadir: Vec3::new(0.08, 0.07, 0.06),
     };
     scene
 }
@@ -87,7 +87,7 @@ fn add_ground(scene: &mut SceneBuilder, name: &str, material: u32, place: Mat4) 
 
 fn add_fence(scene: &mut SceneBuilder, ground: u32) {
     let wood = scene.material(plain("wood", [0.3, 0.25, 0.2], 0.8));
-    add_ground(scene, "lawn", ground, Mat4::IDENTITY);
+    add_ground(scene, "ground", ground, Mat4::IDENTITY);
     let mut fence = MeshBuilder::new();
     for picket in 0..120u8 {
         let at = Vec3::new(-6.0 + 0.1 * f32::from(picket), 0.0, 0.0);

@@ -22,8 +22,8 @@ const STDOUT: &str = "-";
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// A glTF 2.0 file (.gltf or .glb), a mesh (.obj or .ply), a generated scene (demo,
-    /// demo:INSTANCES, materials, materials2, cornell, materials-grid, alpha, lobes), or -: a .glb
-    /// on standard input
+    /// demo:INSTANCES, materials, materials2, cornell, materials-grid, alpha, lobes, yard), or -: a
+    /// .glb on standard input
     #[arg(default_value = foveal_host::scene_source::DEFAULT_SCENE)]
     pub(super) scene: String,
 

@@ -24,6 +24,8 @@ mod targets;
 mod tests;
 #[cfg(test)]
 mod twin;
+#[cfg(test)]
+mod view_tests;
 
 pub(crate) use targets::HistoryTargets;
 
