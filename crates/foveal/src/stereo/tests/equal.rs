@@ -223,14 +223,19 @@ fn instancing_equals_two_passes_to_the_bit_on_every_generated_scene() {
             }
         }
         // A clipped triangle is another polygon: its last bits differ (0.05 % of the pixels by 1 or
-        // 2 in the demo scene, whose ground reaches beyond both borders; elsewhere a pixel or
-        // none).
+        // 2 in the demo scene, whose ground reaches beyond both borders; 0.35 % by 1 in the yard,
+        // whose fence's rails do, each of one colour that rounds up or down along its length;
+        // elsewhere a pixel or none).
+        let (one_in, most) = match scene.name.as_str() {
+            "yard" => (250, 1),
+            _ => (1000, 2),
+        };
         for (eye, (plain, clipped)) in plain.iter().zip(&with_plane).enumerate() {
             let (differing, by) = difference(plain, clipped);
             let is_far = |(a, b): &(&[u8; 4], &[u8; 4])| (0..3).any(|c| a[c].abs_diff(b[c]) > 4);
             let far = plain.iter().zip(clipped).filter(is_far).count();
             let is_near = if rounds_alike() {
-                differing <= plain.len() / 1000 && by <= 2
+                differing <= plain.len() / one_in && by <= most
             } else {
                 // Borders of a clipped polygon are other lines, too, by fractions of a pixel.
                 differing <= plain.len() / 50 && far <= plain.len() / 1000
