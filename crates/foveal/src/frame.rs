@@ -40,7 +40,11 @@ impl ViewUniform {
             cluster_shift_x: cluster_shift[0] as f32,
             forward: forward(&eye.world_from_view).to_array(),
             cluster_shift_y: cluster_shift[1] as f32,
-            previous_eye: previous.position().to_array(),
+            previous_eye: if previous.orthographic {
+                (-forward(&previous.world_from_view)).to_array()
+            } else {
+                previous.position().to_array()
+            },
             previous_half_width: previous.view_from_ndc()[0],
         }
     }

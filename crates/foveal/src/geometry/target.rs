@@ -13,7 +13,8 @@ pub(crate) struct GBuffer {
     /// Base colour and occlusion, normal, emissive, metallic and roughness: `pack_surface` in
     /// `shared/surface.wgsl`.
     pub(crate) surface_view: wgpu::TextureView,
-    /// Instance number + 1, and motion in pixels as two halves.
+    /// Instance number + 1; motion in pixels as two halves, and whether the surface has moved in the
+    /// world (`shared/identity.wgsl`).
     pub(crate) identity_view: wgpu::TextureView,
     /// Reversed depth.
     pub(crate) depth_view: wgpu::TextureView,

@@ -3,9 +3,8 @@
 use foveal_generate as generate;
 
 use super::request::BUMPY_BY;
-use crate::gpu::read_level;
 use crate::shading::twin::unit_from_octahedral;
-use crate::testing::{gpu, rendered, small, texels};
+use crate::testing::{rate_cells, rendered, small, texels};
 use crate::{Composite, RateSource, RefineEdges, Shading};
 
 const BUMP: f32 = 0.1;
@@ -33,11 +32,8 @@ fn bumpy_surfaces_request_finer_levels_as_their_twin_says() {
     let quads = |settings: &crate::Settings| {
         let renderer = rendered(&scene, &scene.cameras[0], settings);
         let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
-        let chain = &rate.pyramid;
-        let read = read_level(gpu(), &chain.texture, 0, chain.blocks(1));
         let surfaces: Vec<[u32; 4]> = texels(&renderer.targets().gbuffer.surface_layers);
-        let cells: Vec<u8> = pollster::block_on(read).unwrap();
-        (cells, surfaces)
+        (rate_cells(&rate.pyramid, 1), surfaces)
     };
     let (cells, surfaces) = quads(&settings);
     let (mut bumpy, mut even, mut differ) = (0, 0, 0);

@@ -19,7 +19,8 @@ struct View {
     // Unit view direction, world space.
     forward: vec3f,
     cluster_shift_y: f32,
-    // Of the frame before: the eye, and half the picture's width at distance 1 (perspective).
+    // Of the frame before: the eye, orthographic the unit direction to it; and half the picture's
+    // width, perspective at distance 1.
     previous_eye: vec3f,
     previous_half_width: f32,
 }

@@ -221,7 +221,7 @@ fn reprojected(texel: vec2u) -> Reprojected {
     let eye_then = select(frame.views[0].previous_eye, frame.views[1].previous_eye, is_right);
     let half_width_then = select(frame.views[0].previous_half_width, frame.views[1].previous_half_width, is_right);
     let half_width = abs(select(frame.views[0].view_from_ndc.x, frame.views[1].view_from_ndc.x, is_right));
-    let v_then = select(normalize(eye_then - position), v, is_orthographic);
+    let v_then = select(normalize(eye_then - position), eye_then, is_orthographic);
     let sides = vec2f(abs(half_width_then) * clip_then.w, half_width * select(distance, 1.0, is_orthographic));
     let is_coarser = was_larger(sides, vec2f(dot(s.normal, v_then), dot(s.normal, v)));
     let expected = Expected(s.normal, distance_then, who.x & SEEN_INSTANCE, own.level);

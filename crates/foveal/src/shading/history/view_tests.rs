@@ -1,6 +1,6 @@
 //! Kept light where the eye moves: highlights, and cuts to closer views.
 
-use foveal_scene::{Camera, Light, LightKind, Material, Scene};
+use foveal_scene::{Camera, Light, LightKind, Material, Projection, Scene};
 use glam::{Mat4, Vec3};
 
 use crate::forward::twin::quads;
@@ -83,6 +83,31 @@ fn highlights_do_not_lag_behind_the_eye() {
                 "roughness {roughness}, level {level}: {kept}, {anew}"
             );
         }
+    }
+}
+
+#[test]
+fn highlights_do_not_lag_behind_a_parallel_projection_that_turns() {
+    let lamps = (0..6u8).map(|i| (Vec3::new(f32::from(i) - 2.5, 0.3, 0.8), 2.0));
+    let scene = wall(0.15, lamps);
+    let views: Vec<Camera> = (0..14u8)
+        .map(|frame| {
+            let (sin, cos) = (0.05 * f32::from(frame)).sin_cos();
+            let eye = 3.0 * Vec3::new(sin, 0.0, cos);
+            Camera {
+                projection: Projection::Orthographic {
+                    height_m: 2.5,
+                    near_m: 0.1,
+                    far_m: 10.0,
+                },
+                ..Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 0.8)
+            }
+        })
+        .collect();
+    for level in [0, 2] {
+        let [kept, anew] = errors(&scene, &settings(level), &views);
+        println!("PARALLEL level {level}: {kept}, {anew}");
+        assert!(kept < 1.5 * anew + 0.01, "level {level}: {kept}, {anew}");
     }
 }
 
