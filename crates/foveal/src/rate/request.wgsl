@@ -28,7 +28,7 @@ override SOURCE: u32 = 0u;
 override OTHER: u32 = 1u;
 // 0 the first source alone, 1 the coarser of both, 2 the finer.
 override COMBINE: u32 = 0u;
-// By so many levels bumpy surfaces are refined.
+// By so many levels bumpy surfaces are refined; sharp metals by twice as many.
 override BUMPY_BY: u32 = 0u;
 
 @group(1) @binding(1) var rate_image: texture_2d<u32>;
@@ -126,8 +126,11 @@ fn requested(block: vec2u) -> u32 {
     return level;
 #else
     let first = vec2i(min(block * 2u, last));
-    let is_bumped = BUMPY_BY > 0u && instance_at(first) != 0u && is_bumpy(first, vec2i(last));
-    return select(level, level - min(level, BUMPY_BY), is_bumped);
+    if BUMPY_BY == 0u || instance_at(first) == 0u {
+        return level;
+    }
+    let by = min(BUMPY_BY * bumpiness(first, vec2i(last)), level);
+    return level - by;
 #endif
 }
 
