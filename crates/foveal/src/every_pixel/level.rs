@@ -1,6 +1,6 @@
 //! Passes over one level of a mip chain.
 
-use super::{TILE, dispatches};
+use super::kind::{TILE, dispatches};
 use crate::Settings;
 use crate::gpu::{Gpu, MipChain, bind_group, bind_group_layout, uniform, written};
 use crate::recorder::{Recorder, overwritten};

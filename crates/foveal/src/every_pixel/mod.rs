@@ -1,37 +1,18 @@
 //! Passes over every pixel, or every block of a level, as the fragments of a draw or as the
 //! invocations of a dispatch.
 
+mod kind;
 mod level;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use level::{LevelNumbers, LevelPass, LevelRecipe};
 
+use crate::Settings;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, written};
 use crate::recorder::{Recorder, overwritten};
 use crate::shader::{self, Screen, Shader};
-use crate::{LightingPass, Settings};
-
-/// Pixels on each side of a dispatch's workgroup.
-const TILE: u32 = 8;
-
-impl LightingPass {
-    /// The kind of pass that this is on a device: `Fragment` or `Compute`.
-    #[must_use]
-    pub fn resolved(self, gpu: &Gpu) -> Self {
-        match self {
-            Self::Compute if !gpu.is_reduced() => Self::Compute,
-            // docs/decisions/0256-lighting-by-compute.md.
-            Self::Auto if !gpu.is_reduced() && gpu.is_discrete() => Self::Compute,
-            _ => Self::Fragment,
-        }
-    }
-}
-
-/// Whether they are dispatched.
-pub(crate) fn dispatches(gpu: &Gpu, settings: &Settings) -> bool {
-    settings.lighting.pass.resolved(gpu) == LightingPass::Compute
-}
+use kind::{TILE, dispatches};
 
 /// What a pass is made of.
 pub(crate) struct Recipe<'a> {

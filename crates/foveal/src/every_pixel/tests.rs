@@ -2,7 +2,7 @@
 
 use foveal_generate as generate;
 
-use super::dispatches;
+use super::kind::dispatches;
 use crate::testing::{Film, gpu, picture, rate_cells, rendered, rounds_alike, shifted, small};
 use crate::{
     AmbientOcclusion, Antialiasing, Composite, EnvironmentSource, Geometry, LightingPass,
