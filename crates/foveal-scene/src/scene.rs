@@ -144,15 +144,14 @@ impl Scene {
 
     /// Whether an instance's surface, where it is visible, can hide things for certain: made of triangles, opaque (masks
     /// have holes, blended and transmissive surfaces show what is behind them) and rigid (an occluder
-    /// that deforms would have to be prepared in every pose).
+    /// that deforms would have to be prepared in every pose). False where its mesh or material is
+    /// missing.
     #[must_use]
     pub fn can_occlude(&self, instance: &Instance) -> bool {
-        let material = &self.materials[instance.material as usize];
-        let mesh = &self.meshes[instance.mesh as usize];
-        material.alpha_mode == AlphaMode::Opaque
-            && material.transmission.is_none()
-            && mesh.triangle_count() > 0
-            && !mesh.deforms
+        let material = self.materials.get(instance.material as usize);
+        let mesh = self.meshes.get(instance.mesh as usize);
+        material.is_some_and(|m| m.alpha_mode == AlphaMode::Opaque && m.transmission.is_none())
+            && mesh.is_some_and(|mesh| mesh.triangle_count() > 0 && !mesh.deforms)
     }
 
     /// Whether the scene says of any object that it is meant to occlude.
@@ -164,28 +163,26 @@ impl Scene {
     /// Number of triangles drawn: each mesh's, once per instance.
     #[must_use]
     pub fn triangle_count(&self) -> u64 {
-        self.instances
-            .iter()
-            .map(|i| self.meshes[i.mesh as usize].triangle_count() as u64)
-            .sum()
+        self.count_drawn(Mesh::triangle_count)
     }
 
     /// Number of lines drawn: each mesh's, once per instance.
     #[must_use]
     pub fn line_count(&self) -> u64 {
-        self.instances
-            .iter()
-            .map(|i| self.meshes[i.mesh as usize].lines.len() as u64)
-            .sum()
+        self.count_drawn(|mesh| mesh.lines.len())
     }
 
     /// Number of points drawn: each mesh's, once per instance.
     #[must_use]
     pub fn point_count(&self) -> u64 {
-        self.instances
-            .iter()
-            .map(|i| self.meshes[i.mesh as usize].points.len() as u64)
-            .sum()
+        self.count_drawn(|mesh| mesh.points.len())
+    }
+
+    /// The sum over all instances; one whose mesh is missing draws nothing.
+    fn count_drawn(&self, count: impl Fn(&Mesh) -> usize) -> u64 {
+        let meshes = self.instances.iter().map(|i| i.mesh as usize);
+        let meshes = meshes.filter_map(|mesh| self.meshes.get(mesh));
+        meshes.map(|mesh| count(mesh) as u64).sum()
     }
 
     /// Adds a sun where the scene has neither a punctual light nor an environment of its own, so that
@@ -289,6 +286,32 @@ mod tests {
                 "{size}: {corners:?}"
             );
         }
+    }
+
+    #[test]
+    fn an_instance_of_what_is_missing_draws_and_hides_nothing() {
+        let mut scene = scene_of_box(Vec3::ZERO, Vec3::ONE);
+        let instance = Instance {
+            mesh: 0,
+            material: 0,
+            object: 3,
+            world_from_object: Mat4::IDENTITY,
+            bounds: Aabb::EMPTY,
+        };
+        scene.instances.push(instance);
+        let counts = |s: &Scene| [s.triangle_count(), s.line_count(), s.point_count()];
+        assert_eq!(counts(&scene), [0; 3]);
+        assert!(!scene.can_occlude(&instance) && scene.is_visible(&instance));
+        scene.meshes.push(Mesh {
+            indices: vec![0; 3],
+            lines: vec![[0; 2]; 2],
+            points: vec![0; 5],
+            ..Mesh::default()
+        });
+        assert_eq!(counts(&scene), [1, 2, 5]);
+        assert!(!scene.can_occlude(&instance));
+        scene.materials.push(Material::default());
+        assert!(scene.can_occlude(&instance));
     }
 
     #[test]

@@ -50,6 +50,12 @@ pub enum Error {
         /// The texture's name.
         texture: String,
     },
+    /// An instance, material or mesh of a scene has an index of something that is not there.
+    #[error("the scene cannot be drawn: {cause}")]
+    Scene {
+        /// The place, its index, and how many there are.
+        cause: String,
+    },
     /// A pose of another scene than the one that was set.
     #[error("the pose is of another scene: {difference}; set the scene again")]
     OtherScene {

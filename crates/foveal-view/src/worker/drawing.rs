@@ -86,6 +86,7 @@ impl Drawing {
             Error::Limit { .. }
             | Error::Setting { .. }
             | Error::NoTexels { .. }
+            | Error::Scene { .. }
             | Error::OtherScene { .. }
             | Error::Environment { .. } => {}
             _ => self.gpu = None,

@@ -14,8 +14,9 @@ impl Renderer {
     /// Uploads a scene in place of the last one.
     ///
     /// # Errors
-    /// [`Error::Limit`] where the scene exceeds the device's limits, [`Error::NoTexels`],
-    /// [`Error::OutOfMemory`]; the renderer keeps its old scene then.
+    /// [`Error::Scene`] where an instance's mesh, material or object, a material's texture, or a
+    /// mesh's vertex is not there; [`Error::Limit`] where the scene exceeds the device's limits,
+    /// [`Error::NoTexels`], [`Error::OutOfMemory`]; the renderer keeps its old scene then.
     pub async fn set_scene(&mut self, scene: &Scene) -> Result<(), Error> {
         self.set_scene_within(scene, ArrayLimits::of(&self.gpu))
             .await

@@ -5,6 +5,7 @@ mod bindings;
 mod blocks_tests;
 mod families;
 mod geometry;
+mod indices;
 mod instances;
 mod lobes;
 mod material_uniform;
@@ -25,6 +26,7 @@ use geometry::MeshRange;
 #[cfg(test)]
 pub(crate) use geometry::PlaceUniform;
 pub(crate) use geometry::{SceneGeometry, VERTEX_LAYOUTS, geometry_layout};
+use indices::check_indices;
 pub(crate) use instances::InstanceUniform;
 pub(crate) use lobes::LobeClass;
 #[cfg(test)]
@@ -106,6 +108,9 @@ pub(crate) struct PoseChange {
 
 impl SceneOnGpu {
     /// Uploads `scene` with these textures, of which its own may have lost their texels.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] where an index names nothing; [`Error::Limit`], [`Error::NoTexels`].
     pub(crate) fn new(
         gpu: &Gpu,
         scene: &Scene,
@@ -115,6 +120,7 @@ impl SceneOnGpu {
         limits: ArrayLimits,
     ) -> Result<Self, Error> {
         check_lights(scene)?;
+        check_indices(scene)?;
         let exposure_stops = settings.picture.exposure_stops;
         let lights = LightUniform::all(&scene.lights, exposure_stops);
         let light_table = table_of_lights(gpu, &lights);
