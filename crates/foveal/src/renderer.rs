@@ -220,11 +220,13 @@ impl Renderer {
     /// history, so that a host with an eye tracker calls this before each frame. A change of the
     /// environment's intensity and rotation, and of the radius of ambient occlusion, with or without
     /// one of gaze, gives up the light history alone. A change of size alone rebuilds the targets
-    /// alone; any other makes all pipelines anew. Some changes take effect with the next
-    /// [`Renderer::set_scene`] ([`Settings::needs_scene_again`]): of
-    /// [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and to a culling that
-    /// has occluders ([`Culling::has_occluders`](crate::Culling::has_occluders)), which are baked
-    /// with the scene. So does leaving out casters where shadows were off.
+    /// alone; any other makes all pipelines anew.
+    ///
+    /// Some changes take effect with the next [`Renderer::set_scene`]
+    /// ([`Settings::needs_scene_again`]): another
+    /// [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy); a culling with
+    /// occluders ([`Culling::has_occluders`](crate::Culling::has_occluders)) after one without; and
+    /// with such a culling shadows after none, which are drawn with all casters until then.
     ///
     /// # Errors
     /// As [`Renderer::new`]; the renderer keeps its old settings then.

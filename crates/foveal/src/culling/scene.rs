@@ -10,7 +10,7 @@ use glam::{DAffine3, DVec3, Mat4, Vec3};
 use rayon::prelude::*;
 
 use super::cells::Cells;
-use crate::{Settings, Shadows};
+use crate::Settings;
 
 /// A scene's occluders and boxes.
 #[derive(Debug, Default)]
@@ -57,8 +57,9 @@ impl CullingScene {
         };
         if settings.culling.mode.has_occluders() {
             this.bake(scene);
-            let has_shadows = settings.lighting.shadows != Shadows::Off;
-            this.cells = has_shadows.then(|| Cells::new(scene)).flatten();
+        }
+        if settings.finds_receivers() {
+            this.cells = Cells::new(scene);
         }
         this.take_boxes(scene);
         this.triangles = vec![0; scene.objects.len()];

@@ -166,15 +166,34 @@ fn auto_looks_again_in_another_scene_and_where_the_eye_turns() {
 }
 
 #[test]
-fn settings_whose_scenes_lack_occluders_need_the_scene_again() {
-    let with = |mode| Settings::default().with(|s| s.culling.mode = mode);
-    let bare = [Culling::Off, Culling::Frustum];
-    let baked = [Culling::Auto, Culling::Occlusion];
-    for before in [bare, baked].concat() {
-        for now in [bare, baked].concat() {
-            let expected = baked.contains(&now) && bare.contains(&before);
-            let again = with(now).needs_scene_again(&with(before));
-            assert_eq!(again, expected, "{before:?}, {now:?}");
+fn settings_need_the_scene_again_where_it_lacks_occluders_or_receivers() {
+    let modes = [
+        Culling::Off,
+        Culling::Frustum,
+        Culling::Auto,
+        Culling::Occlusion,
+    ];
+    let all = modes.into_iter().flat_map(|mode| {
+        [Shadows::Off, Shadows::Hard, Shadows::Soft].map(|shadows| {
+            Settings::default().with(|s| {
+                s.culling.mode = mode;
+                s.lighting.shadows = shadows;
+            })
+        })
+    });
+    let all: Vec<Settings> = all.collect();
+    let made = all.iter().map(|settings| {
+        let scene = super::CullingScene::new(&room(), settings);
+        [!scene.occluders.is_empty(), scene.cells.is_some()]
+    });
+    let made: Vec<[bool; 2]> = made.collect();
+    assert!(made.contains(&[false; 2]) && made.contains(&[true; 2]));
+    for (before, had) in all.iter().zip(&made) {
+        for (now, has) in all.iter().zip(&made) {
+            let expected = has.iter().zip(had).any(|(has, had)| *has && !*had);
+            let what = |s: &Settings| (s.culling.mode, s.lighting.shadows);
+            let again = now.needs_scene_again(before);
+            assert_eq!(again, expected, "{:?}, {:?}", what(before), what(now));
         }
     }
 }

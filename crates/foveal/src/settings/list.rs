@@ -312,14 +312,22 @@ impl Settings {
         self
     }
 
-    /// Whether a scene that was set with the settings `before` must be set again to be drawn with
-    /// these: occluders and samplers are made with it. What may receive shadows is, too, with
-    /// occlusion culling and shadows on: a scene that was set without shadows draws all casters.
+    /// Whether a scene that was set with the settings `before` must be set again for these to take
+    /// full effect: its samplers are made with it, its occluders
+    /// ([`Culling::has_occluders`](crate::Culling::has_occluders)), and with these and shadows what
+    /// may receive shadows. Without occluders nothing is found hidden; without receivers no shadow
+    /// caster is left out.
     #[must_use]
     pub fn needs_scene_again(&self, before: &Self) -> bool {
         let occludes = |s: &Self| s.culling.mode.has_occluders();
         self.lighting.anisotropy != before.lighting.anisotropy
             || occludes(self) && !occludes(before)
+            || self.finds_receivers() && !before.finds_receivers()
+    }
+
+    /// Whether what may receive shadows is made with a scene that is set.
+    pub(crate) fn finds_receivers(&self) -> bool {
+        self.culling.mode.has_occluders() && self.lighting.shadows != Shadows::Off
     }
 
     /// The same settings at the size at which the frame is drawn, before
