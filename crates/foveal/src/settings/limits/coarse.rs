@@ -41,7 +41,12 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
     );
     if shows_tiles && s.shading.mode == Shading::Full {
         let value = format!("{:?}", s.picture.view).to_lowercase();
-        return wrong("view", value, "another one unless shading is coarse");
+        let expected = if s.picture.view == DebugView::Blocks {
+            "another one unless shading is coarse"
+        } else {
+            "another one unless shading is coarse or variable"
+        };
+        return wrong("view", value, expected);
     }
     for (name, level) in [
         ("coarsest-level", s.coarse.coarsest_level),
@@ -71,4 +76,32 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
         );
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_view_that_full_shading_lacks_names_the_shading_that_has_it() {
+        for view in [
+            DebugView::Rate,
+            DebugView::Blocks,
+            DebugView::Shaded,
+            DebugView::Unknown,
+        ] {
+            let shown_by = |mode| {
+                let settings = Settings::default().with(|s| {
+                    s.picture.view = view;
+                    s.shading.mode = mode;
+                });
+                settings.validate(&wgpu::Limits::default())
+            };
+            let error = shown_by(Shading::Full).unwrap_err().to_string();
+            for (mode, name) in [(Shading::Coarse, "coarse"), (Shading::Variable, "variable")] {
+                let is_named = error.contains(name);
+                assert_eq!(shown_by(mode).is_ok(), is_named, "{view:?} {name}: {error}");
+            }
+        }
+    }
 }
