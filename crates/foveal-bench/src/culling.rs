@@ -31,7 +31,7 @@ use rows::Row;
 /// Arguments of `foveal bench culling`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Args {
-    /// glTF 2.0 files or generated scenes
+    /// glTF 2.0, OBJ or PLY files, or generated scenes
     #[arg(default_value = scene_source::DEFAULT_SCENE)]
     scenes: Vec<String>,
 

@@ -39,7 +39,7 @@ const SCHEMA_VERSION: u32 = 2;
 /// Arguments of `foveal bench all`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A glTF 2.0 file or a generated scene
+    /// A glTF 2.0, OBJ or PLY file, or a generated scene
     #[arg(default_value = scene_source::DEFAULT_SCENE)]
     scene: String,
 

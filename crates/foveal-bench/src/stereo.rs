@@ -56,8 +56,8 @@ const WARM_UP: u32 = 2;
 /// Arguments of `foveal bench stereo`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// glTF 2.0 files or generated scenes [default: materials materials2 demo]. All but the first
-    /// two are culled by occlusion, and their equal draws are merged
+    /// glTF 2.0, OBJ or PLY files, or generated scenes [default: materials materials2 demo]. All
+    /// but the first two are culled by occlusion, and their equal draws are merged
     scenes: Vec<String>,
 
     /// Width and height of one eye's picture in pixels

@@ -19,7 +19,7 @@ pub(super) const WARM_UP: u32 = 8;
 /// A scene, where it is seen from, and what draws it.
 #[derive(Debug, Clone, clap::Args)]
 pub(super) struct SubjectArgs {
-    /// A glTF 2.0 file or a generated scene
+    /// A glTF 2.0, OBJ or PLY file, or a generated scene
     #[arg(default_value = scene_source::DEFAULT_SCENE)]
     pub(super) scene: String,
 

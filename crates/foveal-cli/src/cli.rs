@@ -22,7 +22,8 @@ pub(crate) struct Cli {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Draw a scene into a PNG file, or a sequence of frames into numbered files
+    /// Draw a scene into a picture (PNG, EXR or HDR), or a sequence of frames into numbered files
+    /// or a video
     Render(Box<render::Args>),
     /// Open a window on a scene: fly, switch every setting, see what it costs
     View(Box<view::Args>),

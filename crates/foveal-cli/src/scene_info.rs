@@ -13,7 +13,7 @@ use foveal_host::{console, scene_source};
 /// Arguments of `foveal scene info`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// A glTF 2.0 file or a generated scene, as for `foveal render`
+    /// A glTF 2.0, OBJ or PLY file, or a generated scene, as for `foveal render`
     #[arg(default_value = scene_source::DEFAULT_SCENE)]
     scene: String,
 

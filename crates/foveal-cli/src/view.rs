@@ -19,7 +19,7 @@ use foveal_host::{atomic_file, command_line, gpu, scene_source, values};
 #[derive(Debug, clap::Args)]
 #[command(after_help = foveal_view::keys_help())]
 pub(crate) struct Args {
-    /// A glTF 2.0 file or a generated scene
+    /// A glTF 2.0, OBJ or PLY file, or a generated scene, as for `foveal render`
     #[arg(default_value = scene_source::DEFAULT_SCENE)]
     scene: String,
 

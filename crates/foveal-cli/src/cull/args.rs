@@ -11,8 +11,8 @@ use foveal_host::values;
 /// Arguments of `foveal cull`.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct Args {
-    /// A glTF 2.0 file or a generated scene, as for `foveal render`; or recorded occluder draws
-    /// (.mocrec)
+    /// A glTF 2.0, OBJ or PLY file, or a generated scene, as for `foveal render`; or recorded
+    /// occluder draws (.mocrec)
     #[arg(default_value = foveal_host::scene_source::DEFAULT_SCENE)]
     pub(super) scene: String,
 

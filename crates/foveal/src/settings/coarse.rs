@@ -17,7 +17,9 @@ pub enum Shading {
     Full,
     /// One sample per square block of pixels. The rate map gives the block sizes.
     Coarse,
-    /// One sample per 1 x 1, 2 x 1, 1 x 2 or 2 x 2 pixels, as the picture's content allows.
+    /// One sample per 1 x 1, 2 x 1, 1 x 2 or 2 x 2 pixels, or 4 x 4 with
+    /// [`VariableSettings::blocks_4x4`](crate::VariableSettings::blocks_4x4), as the picture's
+    /// content allows.
     Variable,
 }
 

@@ -177,8 +177,9 @@ settings! {
     /// The number of samples that are shaded.
     "Shading" shading: ShadingSettings {
         /// Number of lighting samples: full takes one per pixel (the reference), coarse one per
-        /// block of pixels, larger away from the gaze, variable one per 1x1 to 2x2 pixels.
-        /// With variable, rate content makes samples as fine as the picture's contrast asks for.
+        /// block of pixels, larger away from the gaze, variable one per 1x1 to 2x2 pixels,
+        /// or to 4x4 with rate-4x4. With variable, rate content makes samples as fine as the
+        /// picture's contrast asks for.
         shading => mode: Shading = Shading::default(), "Mode", Kind::choice::<Shading>();
     }
     /// The eye, its display, and the difference that it may see.
@@ -189,7 +190,8 @@ settings! {
         display => display: Display = Display::Camera, "Display", Kind::Text;
         /// Quality in JOD at which coarse shading aims: 10 is no visible difference from full
         /// shading, 9 one that 75 % of observers would see. Lower it for speed. Pictures meet
-        /// the default, 9.5; in motion, with history, videos of it are measured at 9.2 to 9.4.
+        /// the default, 9.5, on average; the hardest that are known come to 8.9. In motion, with
+        /// history, videos are measured at 9.0 to 10.
         quality => quality_jod: f32 = 9.5, "Quality", Kind::Number { least: 5.0, most: 10.0 };
         /// Point that the eye looks at, as fractions of the picture from its top left corner.
         /// The default is the centre.
