@@ -188,7 +188,7 @@ fn light_that_is_kept_follows_tiles_that_are_drawn_late() {
     // The frame that drew the last tile knew: to the next one nothing is new.
     draw(&mut film, &there);
     let history = film.renderer.history();
-    assert!(history.told.reset == 0 && history.changed_places.is_empty());
+    assert!(history.parameters.reset == 0 && history.changed_places.is_empty());
     let shown = |film: &mut Film| (0..ROUND + 2).map(|_| draw(film, &there).0).last();
     let (shown, expected) = (shown(&mut film), shown(&mut unlimited));
     let (count, by) = off(&shown.expect("frames"), &expected.expect("frames"));

@@ -308,7 +308,7 @@ fn light_that_is_kept_is_told_where_shadows_have_moved() {
         let history = film.renderer.history();
         let places = &history.changed_places;
         assert_eq!(
-            (history.told.reset, places.is_empty()),
+            (history.parameters.reset, places.is_empty()),
             (0, shadows == Shadows::Off)
         );
         let holds = |&[x, y, z, r]: &[f32; 4]| {

@@ -251,7 +251,7 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
     ] {
         assert_same_layout!(
             shader,
-            "Told",
+            "HistoryParameters",
             crate::shading::HistoryParameters,
             [
                 rounding,

@@ -22,7 +22,7 @@ use crate::{Settings, shader};
 /// Pixels a side that one workgroup looks at.
 const TILE: u32 = 8;
 
-/// Mirrors `Told` in `told.wgsl`, where the fields are explained.
+/// Mirrors `HistoryParameters` in `parameters.wgsl`, where the fields are explained.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct HistoryParameters {
@@ -94,7 +94,7 @@ pub(super) struct HistoryPasses {
     gather: Pass,
     scatter: Pass,
     rest: Pass,
-    /// What the passes are told.
+    /// A [`HistoryParameters`].
     parameters: wgpu::Buffer,
     /// Where changed lights reach, up to one of a negative radius.
     changed: Table,
@@ -131,8 +131,8 @@ impl HistoryPasses {
                 layout,
             }
         };
-        let told = uniform();
-        let tiles = [told, write, write, written(TILE_FORMAT)];
+        let parameters = uniform();
+        let tiles = [parameters, write, write, written(TILE_FORMAT)];
         let environment = environment_constants(settings);
         Self {
             keep: pass(
@@ -199,7 +199,7 @@ impl HistoryPasses {
                 shader::SHADING_HISTORY_REST,
                 "list_turn",
                 None,
-                &[told, depth, write, write],
+                &[parameters, depth, write, write],
                 &[("ROUND", f64::from(ROUND))],
             ),
             parameters: gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -212,7 +212,7 @@ impl HistoryPasses {
         }
     }
 
-    /// Tells the passes of the frame at hand.
+    /// Uploads the frame's parameters and the places where light has changed.
     pub(super) fn write(&mut self, gpu: &Gpu, parameters: &HistoryParameters, changed: &[Place]) {
         gpu.queue
             .write_buffer(&self.parameters, 0, bytemuck::bytes_of(parameters));

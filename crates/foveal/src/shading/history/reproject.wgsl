@@ -9,7 +9,7 @@
 #endif
 #import shading/coarse/light.wgsl
 #import shading/history/layout.wgsl
-#import shading/history/told.wgsl
+#import shading/history/parameters.wgsl
 #import shared/blocks.wgsl
 #import shared/frame.wgsl
 #import shared/identity.wgsl
@@ -23,7 +23,7 @@
 @group(1) @binding(1) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
 @group(1) @binding(3) var gbuffer_identity: texture_2d_array<u32>;
-@group(1) @binding(4) var<uniform> told: Told;
+@group(1) @binding(4) var<uniform> parameters: HistoryParameters;
 // Where changed lights reach, now or in the frame before: centre and radius, world space. Nothing
 // is kept there. A negative radius ends them.
 #ifdef TABLES
@@ -138,7 +138,7 @@ fn history_at(place: vec2i, texel: vec2u, picture: Picture, expected: Expected) 
     let origin = select(texel, vec2u(place), inside);
     let noted = textureLoad(seen_before, origin, 0).x;
     let by_itself = (noted | SEEN_OWN) & ~(SEEN_LEVEL << SEEN_LEVEL_SHIFT);
-    let old = select(noted, by_itself, told.whole_round != 0u);
+    let old = select(noted, by_itself, parameters.whole_round != 0u);
     let words = textureLoad(light_before, origin, 0);
     let measured = textureLoad(tiles, origin / 8u, 0).xy;
     let tile = TileHistory(measured.x, measured.y);
@@ -147,7 +147,7 @@ fn history_at(place: vec2i, texel: vec2u, picture: Picture, expected: Expected) 
         && (old & SEEN_INSTANCE) == expected.instance
         && abs(distance_from_bits(old) - expected.distance) <= SAME_DISTANCE * expected.distance
         && ((old >> SEEN_LEVEL_SHIFT) & SEEN_LEVEL) <= expected.level
-        && tile.change < told.change
+        && tile.change < parameters.change
         && dot(unpack_light(words).normal, expected.normal) > SAME_NORMAL;
     return Memory(known, old, words, tile);
 }
@@ -155,7 +155,7 @@ fn history_at(place: vec2i, texel: vec2u, picture: Picture, expected: Expected) 
 // The first place of the frame before that tells a pixel's light: the one that motion names, then the
 // other three of the four around it.
 fn remember(before: vec2f, texel: vec2u, picture: Picture, expected: Expected, places: u32) -> Memory {
-    let rounded = floor(before + told.rounding);
+    let rounded = floor(before + parameters.rounding);
     let first = floor(before - 0.5);
     var memory = Memory(false, 0u, vec4u(0u), TileHistory(0.0, 0.0));
     // A loop that ends early, and asks at its end: where all branches are run, loops alone save work,
@@ -185,9 +185,9 @@ fn radiance_of(light: SampleLight, s: Surface, v: vec3f, reaching: f32) -> vec3f
 // Whether a pixel's share of its block's samples is due. What proved wrong is renewed sooner.
 fn is_due(texel: vec2u, level: u32, error: f32) -> bool {
     let block = exp2(-2.0 * f32(level));
-    let haste = clamp(error / told.tolerance, 1.0, MOST_A_BLOCK / told.renewal);
-    let share = clamp(block * told.renewal * haste, min(LEAST_RENEWAL, block), 1.0);
-    return f32(order_of(texel) + told.phase) < share * 4294967296.0;
+    let haste = clamp(error / parameters.tolerance, 1.0, MOST_A_BLOCK / parameters.renewal);
+    let share = clamp(block * parameters.renewal * haste, min(LEAST_RENEWAL, block), 1.0);
+    return f32(order_of(texel) + parameters.phase) < share * 4294967296.0;
 }
 
 // What a pixel keeps, and what it shows.
@@ -231,7 +231,7 @@ fn reprojected(texel: vec2u) -> Reprojected {
     // Other light falls on what has moved. Without `||`, which would branch on a uniform alone.
     let has_moved = (who.y & HAS_MOVED) != 0u;
     let turned = turn_by_width(s, v, v_then);
-    let is_other = (told.reset != 0u) | has_changed(position) | has_moved | is_coarser | (turned > MOST_TURNED);
+    let is_other = (parameters.reset != 0u) | has_changed(position) | has_moved | is_coarser | (turned > MOST_TURNED);
     let memory = remember(before, texel, picture, expected, select(4u, 0u, is_other));
 
     let sample = sample_texel(own.block, own.level, 0u);

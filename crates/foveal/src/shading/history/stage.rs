@@ -47,9 +47,9 @@ pub(crate) struct HistoryStage {
     /// The frame shows the last one's radiance again.
     again: bool,
     pub(super) lit: Lit,
-    /// What the last frame's passes were told.
-    pub(crate) told: HistoryParameters,
-    /// Where they were told that light has changed.
+    /// Of the last frame.
+    pub(crate) parameters: HistoryParameters,
+    /// Where light had changed in the last frame.
     pub(crate) changed_places: Vec<Place>,
 }
 
@@ -85,7 +85,7 @@ impl HistoryStage {
             in_full: false,
             again: false,
             lit: Lit::default(),
-            told: HistoryParameters::default(),
+            parameters: HistoryParameters::default(),
             changed_places: Vec::new(),
         })
     }
@@ -174,16 +174,17 @@ impl HistoryStage {
             turn: self.rested.checked_sub(1),
         };
         let changed = std::mem::take(&mut self.now_changed);
-        self.told = self.parameters(settings, reset);
+        self.parameters = self.frame_parameters(settings, reset);
         self.changed_places = match changed {
             Changed::Within(places) => places,
             Changed::Nowhere | Changed::Everywhere => Vec::new(),
         };
-        self.passes.write(gpu, &self.told, &self.changed_places);
+        self.passes
+            .write(gpu, &self.parameters, &self.changed_places);
     }
 
-    /// What the frame's passes are told.
-    fn parameters(&self, settings: &Settings, reset: bool) -> HistoryParameters {
+    /// Parameters of the frame at hand.
+    fn frame_parameters(&self, settings: &Settings, reset: bool) -> HistoryParameters {
         // What a block's renewal and tolerance are at a quality of 9.5; a step of one JOD is a
         // factor of 4. Found by measurement.
         let finer = 4.0_f32.powf(settings.eye.quality_jod - 9.5);

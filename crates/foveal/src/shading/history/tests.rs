@@ -420,12 +420,13 @@ fn what_is_carried_and_what_is_shaded_equal_their_twin() {
             identity: texels(&targets.gbuffer.identity_view),
             owner,
         };
-        let told = film.renderer.history().told;
+        let parameters = film.renderer.history().parameters;
         let found: Vec<u32> = texels(&kept.seen[1 - last]);
         let (mut shaded, mut bare, mut off) = (0, 0, 0);
         for (i, &found) in (0..).zip(&found) {
             let texel = UVec2::new(i % SIZE.0, i / SIZE.0);
-            let (fate, remembers) = frame_seen.reproject([&now, &previous], &before, &told, texel);
+            let (fate, remembers) =
+                frame_seen.reproject([&now, &previous], &before, &parameters, texel);
             fates[fate as usize] += 1;
             shaded += u64::from(fate == Fate::Shaded);
             bare += u64::from(fate == Fate::Bare);

@@ -2,9 +2,9 @@
 
 #import shading/history/measured.wgsl
 #import shading/history/layout.wgsl
-#import shading/history/told.wgsl
+#import shading/history/parameters.wgsl
 
-@group(1) @binding(0) var<uniform> told: Told;
+@group(1) @binding(0) var<uniform> parameters: HistoryParameters;
 @group(1) @binding(1) var<storage, read_write> measured: array<Measured>;
 // Errors that were measured of late, tile by tile.
 @group(1) @binding(2) var<storage, read_write> kept: array<vec2f>;
@@ -27,7 +27,7 @@ fn keep(@builtin(global_invocation_id) id: vec3u) {
     let error = bitcast<f32>(atomicLoad(&measured[tile].error));
     let change = bitcast<f32>(atomicLoad(&measured[tile].change));
     let largest = max(kept[tile] * vec2f(KEPT, KEPT_CHANGE), vec2f(error, change));
-    kept[tile] = select(largest, vec2f(0.0), told.reset != 0u);
+    kept[tile] = select(largest, vec2f(0.0), parameters.reset != 0u);
 }
 
 @compute @workgroup_size(64)

@@ -94,7 +94,7 @@ impl Seen {
         &self,
         [camera, previous]: [&Camera; 2],
         before: &Before,
-        told: &HistoryParameters,
+        parameters: &HistoryParameters,
         texel: UVec2,
     ) -> Reprojected {
         let i = self.index(texel);
@@ -125,7 +125,7 @@ impl Seen {
             let inside = place.cmpge(IVec2::ZERO).all() && place.as_uvec2().cmplt(self.size).all();
             let from = inside.then(|| place.as_uvec2())?;
             let mut old = before.seen[self.index(from)];
-            if told.whole_round != 0 {
+            if parameters.whole_round != 0 {
                 old = (old | OWN) & !(7 << LEVEL_SHIFT);
             }
             let across = self.size.x.div_ceil(8);
@@ -134,7 +134,7 @@ impl Seen {
             let part = |by: u32| (bits >> by & 63) as f32 / 31.0 - 1.0;
             let then = unit_from_square(Vec2::new(part(0), part(6)));
             let away = (f32::from_bits((old & DISTANCE) >> 1) - expected).abs();
-            let known = told.reset == 0
+            let known = parameters.reset == 0
                 && !has_moved
                 && !is_coarser
                 && turned <= MOST_TURNED
@@ -142,12 +142,12 @@ impl Seen {
                 && (old ^ who) & INSTANCE == 0
                 && away <= SAME_DISTANCE * expected
                 && (old >> LEVEL_SHIFT & 7) <= level
-                && tile[1] < told.change
+                && tile[1] < parameters.change
                 && then.dot(s.normal) > SAME_NORMAL;
             known.then_some((old, tile))
         };
         let place = pixel - motion;
-        let rounded = (place + Vec2::from(told.rounding)).floor();
+        let rounded = (place + Vec2::from(parameters.rounding)).floor();
         let first = (place - 0.5).floor();
         let found = remembered(rounded).or_else(|| {
             (1..4u32).find_map(|i| {
@@ -160,11 +160,13 @@ impl Seen {
         if let Some((old, [error, _])) = found {
             let block = 0.25_f32.powi(level as i32);
             let error = error.max(TURN_AS_ERROR * turned);
-            let haste = (error / told.tolerance).clamp(1.0, MOST_A_BLOCK / told.renewal);
-            let share = (block * told.renewal * haste).clamp(LEAST_RENEWAL.min(block), 1.0);
+            let haste =
+                (error / parameters.tolerance).clamp(1.0, MOST_A_BLOCK / parameters.renewal);
+            let share = (block * parameters.renewal * haste).clamp(LEAST_RENEWAL.min(block), 1.0);
             let order = (texel.x.wrapping_mul(3_242_174_889))
                 .wrapping_add(texel.y.wrapping_mul(2_447_445_414));
-            let is_renewed = (order.wrapping_add(told.phase) as f32) < share * 4_294_967_296.0;
+            let is_renewed =
+                (order.wrapping_add(parameters.phase) as f32) < share * 4_294_967_296.0;
             let block = texel >> level;
             let sample = sample_texel(block.into(), level, 0, self.size.into());
             let is_block_sample = level > 0 && UVec2::from(sample) == texel;

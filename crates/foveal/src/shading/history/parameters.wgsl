@@ -1,9 +1,9 @@
-// What the passes of a frame are told. Rust: `HistoryParameters` in `shading/history/passes.rs`.
+// Parameters of a frame's passes. Rust: `HistoryParameters` in `shading/history/passes.rs`.
 
-#expects told
+#expects parameters
 
 // A uniform, on which no branch may hang alone (ARCHITECTURE.md).
-struct Told {
+struct HistoryParameters {
     // Added to a place before it is rounded to whole pixels; -0.5 to 0.5, another one each frame.
     rounding: vec2f,
     // Added to the pixels' order of renewal; another one each frame.
