@@ -174,8 +174,8 @@ impl Renderer {
             .as_ref()
             .and_then(|culling| culling.cells_seen(&self.scene.culling, by_object));
         let receivers = match cells {
-            Some(cells) => Receivers::Cells(cells),
-            None => Receivers::Instances(self.draw_list.drawn.clone()),
+            Some(cells) => Receivers::Cells(cells.into()),
+            None => Receivers::Instances((&self.draw_list.drawn).into()),
         };
         let scene = (&self.scene, receivers);
         let follow_rates = settings.lighting.shadow_sizes == ShadowSizes::Rate
@@ -393,9 +393,8 @@ impl Stages {
             ..
         } = self;
         let gbuffer = &targets.gbuffer;
-        let at_rates = plan.materials == plan.rates;
-        match plan.rates {
-            SampleChoice::Every => {}
+        let rates = match plan.rates {
+            SampleChoice::Every => return,
             SampleChoice::Coarse => {
                 let (Some(coarse), Some(tiles)) = (coarse, &targets.coarse) else {
                     return;
@@ -407,28 +406,23 @@ impl Stages {
                     let rate_map = &mut coarse.rate_map;
                     rate_map.draw(recorder, settings, eyes, gbuffer, &tiles.rate);
                 }
-                if at_rates && plan.compares {
-                    geometry.resolve(recorder, draws, gbuffer, &ResolveAt::COMPARED);
-                }
-                if at_rates {
-                    let at = ResolveAt::at_rates(&tiles.rate.owner.whole);
-                    geometry.resolve(recorder, draws, gbuffer, &at);
-                }
+                &tiles.rate.owner.whole
             }
             SampleChoice::Variable => {
                 let (Some(variable), Some(rates)) = (variable, &targets.variable) else {
                     return;
                 };
                 variable.find_rates(recorder, settings, targets, &seen.eyes, cameras);
-                if at_rates && plan.compares {
-                    geometry.resolve(recorder, draws, gbuffer, &ResolveAt::COMPARED);
-                }
-                if at_rates {
-                    let at = ResolveAt::at_rates(&rates.mask);
-                    geometry.resolve(recorder, draws, gbuffer, &at);
-                }
+                &rates.mask
             }
+        };
+        if plan.materials != plan.rates {
+            return;
         }
+        if plan.compares {
+            geometry.resolve(recorder, draws, gbuffer, &ResolveAt::COMPARED);
+        }
+        geometry.resolve(recorder, draws, gbuffer, &ResolveAt::at_rates(rates));
     }
 
     /// Shading and composite: the radiance of opaque surfaces at each pixel.

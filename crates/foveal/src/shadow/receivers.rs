@@ -1,5 +1,6 @@
 //! What the camera sees in a frame, and since when it has seen it without a break.
 
+use std::borrow::Cow;
 use std::cell::OnceCell;
 
 use foveal_scene::Aabb;
@@ -11,12 +12,22 @@ use super::volume::Volume;
 
 /// What a frame's shadows may fall on.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Receivers {
+pub(crate) enum Receivers<'a> {
     /// Instances, by number: shadows are drawn with all casters.
-    Instances(Vec<u32>),
+    Instances(Cow<'a, [u32]>),
     /// Cells of the scene ([`crate::culling::CullingScene`]), by number, ascending: casters whose
     /// shadows fall on none of them are left out.
-    Cells(Vec<u32>),
+    Cells(Cow<'a, [u32]>),
+}
+
+impl Receivers<'_> {
+    /// The same, to be kept beyond the frame.
+    pub(super) fn into_owned(self) -> Receivers<'static> {
+        match self {
+            Self::Instances(numbers) => Receivers::Instances(numbers.into_owned().into()),
+            Self::Cells(numbers) => Receivers::Cells(numbers.into_owned().into()),
+        }
+    }
 }
 
 /// Since which frame each cell has been seen, without a break and at the same place.

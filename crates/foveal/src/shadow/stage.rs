@@ -52,7 +52,7 @@ struct Drawing {
     /// Spheres within which tiles that had waited have been drawn.
     changed: Vec<Place>,
     /// What the last frame's tiles followed from; they stand while it is the same.
-    settled: Option<Settled>,
+    settled: Option<Settled<'static>>,
 }
 
 /// Casters of the tiles that a frame draws.
@@ -68,12 +68,12 @@ struct Counts {
 
 /// A frame after which the next one of the same needs nothing.
 #[derive(Debug, PartialEq)]
-struct Settled {
+struct Settled<'a> {
     view: ViewOfPlan,
     /// Whether tiles of another size stay until their place is needed: rates may come and go, and
     /// tiles may wait.
     keeps_sizes: bool,
-    receivers: Receivers,
+    receivers: Receivers<'a>,
 }
 
 impl ShadowStage {
@@ -203,7 +203,7 @@ impl ShadowStage {
         &mut self,
         gpu: &Gpu,
         settings: &Settings,
-        (scene, receivers): (&SceneOnGpu, Receivers),
+        (scene, receivers): (&SceneOnGpu, Receivers<'_>),
         eyes: &[Eye; 2],
         rates: Option<FinestRate>,
     ) -> Vec<Place> {
@@ -224,7 +224,11 @@ impl ShadowStage {
                 self.rows.write(gpu, bytemuck::cast_slice(&rows));
                 self.written = rows;
             }
-            drawing.settled = Some(now).filter(|_| drawing.counts.waiting == 0);
+            drawing.settled = (drawing.counts.waiting == 0).then(|| Settled {
+                view: now.view,
+                keeps_sizes: now.keeps_sizes,
+                receivers: now.receivers.into_owned(),
+            });
         } else {
             drawing.kept.rest();
         }
@@ -278,7 +282,7 @@ pub(super) const MOST_FRAMES: u64 = 60;
 
 impl Drawing {
     /// Finds the frame's tiles, and lists the draws of those that are seen and not there.
-    fn find_tiles(&mut self, scene: &SceneOnGpu, now: &Settled) {
+    fn find_tiles(&mut self, scene: &SceneOnGpu, now: &Settled<'_>) {
         let plan = Plan::new(&scene.lights, &now.view, &scene.bounds, self.atlas_level);
         // Light that was kept is wrong where a tile has lost or found room.
         let lost = plan.left_out_of(&self.plan.wanted);
@@ -289,7 +293,7 @@ impl Drawing {
         self.frame += 1;
         let boxes = scene.culling.cells();
         let cells = match &now.receivers {
-            Receivers::Cells(cells) => cells.as_slice(),
+            Receivers::Cells(cells) => cells.as_ref(),
             Receivers::Instances(_) => &[],
         };
         self.seen.see(self.frame, cells, boxes);

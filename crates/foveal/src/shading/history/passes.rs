@@ -98,6 +98,8 @@ pub(super) struct HistoryPasses {
     parameters: wgpu::Buffer,
     /// Where changed lights reach, up to one of a negative radius.
     changed: Table,
+    /// What `changed` holds.
+    places: Vec<Place>,
 }
 
 impl HistoryPasses {
@@ -209,6 +211,7 @@ impl HistoryPasses {
                 mapped_at_creation: false,
             }),
             changed: Table::new(gpu, "changed lights"),
+            places: Vec::new(),
         }
     }
 
@@ -217,8 +220,10 @@ impl HistoryPasses {
         gpu.queue
             .write_buffer(&self.parameters, 0, bytemuck::bytes_of(parameters));
         let end = [0.0, 0.0, 0.0, -1.0];
-        let changed: Vec<Place> = changed.iter().copied().chain([end]).collect();
-        self.changed.write(gpu, bytemuck::cast_slice(&changed));
+        self.places.clear();
+        self.places.extend_from_slice(changed);
+        self.places.push(end);
+        self.changed.write(gpu, bytemuck::cast_slice(&self.places));
     }
 }
 
@@ -230,6 +235,8 @@ struct Frame<'a> {
     targets: &'a Targets,
     rate: &'a RateTargets,
     history: &'a HistoryTargets,
+    /// The bind group of `size_lists`.
+    sizes: wgpu::BindGroup,
     /// Which of the two textures of light, and of what is seen, this frame writes.
     now: usize,
     /// Which holds the last frame's.
@@ -271,25 +278,24 @@ impl HistoryPasses {
         (rate, history): (&RateTargets, &HistoryTargets),
         lit: Lit,
     ) {
-        let (now, before) = if lit.even { (0, 1) } else { (1, 0) };
-        let frame = Frame {
-            gpu: recorder.gpu,
-            input,
-            targets,
-            rate,
-            history,
-            now,
-            before,
-        };
         recorder.encoder.clear_buffer(&history.listed, 0, None);
-        match lit.turn {
-            // All is at rest, and every pixel has been shaded.
-            Some(turn) if turn >= ROUND => {}
-            Some(_) => {
+        // Later turns find all at rest, and every pixel shaded.
+        if lit.turn.is_none_or(|turn| turn < ROUND) {
+            let (now, before) = if lit.even { (0, 1) } else { (1, 0) };
+            let frame = Frame {
+                gpu: recorder.gpu,
+                input,
+                targets,
+                rate,
+                history,
+                sizes: self.sizes(recorder.gpu, history),
+                now,
+                before,
+            };
+            if lit.turn.is_some() {
                 self.list_turn(recorder, &frame);
                 self.shade_samples(recorder, &frame);
-            }
-            None => {
+            } else {
                 self.reproject(recorder, &frame);
                 self.shade_samples(recorder, &frame);
                 self.gather(recorder, &frame);
@@ -297,6 +303,17 @@ impl HistoryPasses {
             }
         }
         history.show(recorder, &targets.radiance_view);
+    }
+
+    fn sizes(&self, gpu: &Gpu, history: &HistoryTargets) -> wgpu::BindGroup {
+        let lists = [&history.listed, &history.dispatches];
+        let resources = lists.map(wgpu::Buffer::as_entire_binding);
+        bind_group(
+            &gpu.device,
+            "list dispatches",
+            &self.size.layout,
+            &resources,
+        )
     }
 
     /// At rest: lists the pixels whose turn it is.
@@ -460,17 +477,8 @@ impl HistoryPasses {
 
     /// Turns the lengths of lists into sizes of dispatches.
     fn size_lists(&self, pass: &mut wgpu::ComputePass<'_>, frame: &Frame<'_>) {
-        let h = frame.history;
-        let sizes = frame.group(
-            &self.size,
-            "list dispatches",
-            &[
-                h.listed.as_entire_binding(),
-                h.dispatches.as_entire_binding(),
-            ],
-        );
         pass.set_pipeline(&self.size.pipeline);
-        pass.set_bind_group(1, &sizes, &[]);
+        pass.set_bind_group(1, &frame.sizes, &[]);
         pass.dispatch_workgroups(1, 1, 1);
     }
 }
