@@ -25,7 +25,6 @@ mod coarse;
 mod environment;
 #[cfg(test)]
 mod fault_tests;
-mod figures;
 mod in_flight;
 mod mend;
 mod plan;
@@ -36,6 +35,7 @@ mod scenes;
 #[cfg(test)]
 mod settings_tests;
 mod stages;
+mod stats;
 mod submit;
 #[cfg(test)]
 mod testing;
@@ -294,7 +294,7 @@ impl Renderer {
             self.stages.forget_light();
             return Ok(());
         }
-        // Its counts are read from targets that go.
+        // Its counters are read from targets that go.
         self.in_flight = None;
         let keeps_light = |s: &Settings| HistoryStage::is_used(&self.gpu, s);
         if sized == *settings && keeps_light(old) == keeps_light(settings) {
@@ -367,22 +367,22 @@ impl Renderer {
         let drawn = trap.finish().await;
         self.torn(drawn)?;
         let waited = in_flight.wait(&self.gpu).await;
-        let (submitted, counts, frame_ms) = self.torn(waited)?;
+        let (submitted, counters, frame_ms) = self.torn(waited)?;
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         // Frames of `render_to` before it may be finished with it.
         let gpu_ms = self.last_times();
-        let stats = self.figures(submitted, &counts, gpu_ms, frame_ms);
-        let told = trap.finish().await;
-        self.torn(told)?;
+        let stats = self.frame_stats(submitted, &counters, gpu_ms, frame_ms);
+        let collected = trap.finish().await;
+        self.torn(collected)?;
         // What was too small for the frame grows now.
         self.make_room().await?;
         Ok(stats)
     }
 
-    /// Draws one frame into the host's texture, stretched to its size, and waits for nothing. Given
-    /// are the figures of an earlier frame that has been finished since the last call; a host that
-    /// draws all the time gets them every few frames. The host's own passes may follow at once:
-    /// they are executed after these.
+    /// Draws one frame into the host's texture, stretched to its size, and waits for nothing.
+    /// Returns the stats of an earlier frame that has been finished since the last call; a host
+    /// that draws all the time gets them every few frames. The host's own passes may follow at
+    /// once: they are executed after these.
     ///
     /// # Errors
     /// As [`Renderer::render`]; [`Error::Validation`] where `target` cannot be drawn to.

@@ -177,7 +177,7 @@ pub struct ShadowStats {
     pub shrunk_by: f32,
 }
 
-/// One frame's figures.
+/// One frame's stats.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize))]
 #[non_exhaustive]

@@ -21,7 +21,7 @@ const BAND_GROUPS: u64 = std::mem::offset_of!(QueueUniform, band_groups) as u64;
 
 /// Lighting evaluations of a frame, and where they went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct EdgeCounts {
+pub(crate) struct EdgeStats {
     /// Pixels that were shaded more than once.
     pub(crate) edge_pixels: u64,
     /// Evaluations besides the ordinary path's.
@@ -267,14 +267,14 @@ impl AntialiasStage {
     }
 
     /// What the frame of so many pixels shaded after which the targets' queue held these bytes.
-    pub(crate) fn counts(&self, bytes: &[u8], targets: &Targets, pixels: u64) -> EdgeCounts {
+    pub(crate) fn stats(&self, bytes: &[u8], targets: &Targets, pixels: u64) -> EdgeStats {
         let (Some(t), Ok(queue)) = (
             &targets.samples,
             bytemuck::try_pod_read_unaligned::<QueueUniform>(bytes),
         ) else {
-            return EdgeCounts::default();
+            return EdgeStats::default();
         };
-        EdgeCounts {
+        EdgeStats {
             // Columns between the eyes' pictures may be listed, too.
             edge_pixels: u64::from(queue.edge_pixels).min(pixels),
             entries: u64::from(queue.total),

@@ -49,9 +49,9 @@ pub struct CullingStats {
     pub reused: bool,
 }
 
-/// What culling found in a frame.
+/// How many objects culling found visible in a frame, and how many not, and at what cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct CullingCounts {
+pub(crate) struct ObjectStats {
     pub(crate) visible: u64,
     pub(crate) outside: u64,
     pub(crate) occluded: u64,
@@ -174,7 +174,7 @@ impl CullingStage {
     /// Tests all objects for a picture of `width` x `height` pixels, or two of them where there are
     /// two eyes: what is hidden is hidden from both. A view that makes no sense culls nothing.
     ///
-    /// Each eye is tested for itself, exactly; the figures and the buffer that are shown are then
+    /// Each eye is tested for itself, exactly; the stats and the buffer that are shown are then
     /// the left eye's. Or both are tested at once, from their centre. A result that holds for some
     /// way around the eyes is kept until they leave it.
     pub(crate) fn cull(
@@ -184,7 +184,7 @@ impl CullingStage {
         eyes: Option<&[crate::stereo::Eye; 2]>,
         (width, height): (u32, u32),
         clock: Option<Clock>,
-    ) -> CullingCounts {
+    ) -> ObjectStats {
         (self.rasterize_ms, self.test_ms, self.receivers_ms) = (0.0, 0.0, 0.0);
         let size = (width, height);
         let eye = |world_from_view: Mat4, projection: Projection| {
@@ -209,7 +209,7 @@ impl CullingStage {
                 .is_some_and(|found| found.holds_for(&wanted, self.radius_m));
         if self.reused {
             self.occlusion.keep();
-            return self.counts();
+            return self.object_stats();
         }
         if !self.tried_for.is_some_and(|tried| tried.is_like(&wanted)) {
             self.occlusion.wake();
@@ -230,7 +230,7 @@ impl CullingStage {
         if !both.is_some_and(|view| self.cull_for(scene, view, clock)) {
             self.results.clear();
             self.cells.clear();
-            // The figures that are shown are the first eye's.
+            // The stats that are shown are the first eye's.
             for eye in wanted.eyes.into_iter().flatten().rev() {
                 self.cull_for(scene, View::mono(eye), clock);
             }
@@ -242,7 +242,7 @@ impl CullingStage {
         let is_shown = |object| scene.is_shown(object);
         let hidden = hidden_triangles(&self.results, &scene.triangles, is_shown);
         self.occlusion.advance(hidden, rasterized);
-        self.counts()
+        self.object_stats()
     }
 
     /// Adds what is seen in a view to the results: all of it if the view makes no sense, which is
@@ -309,9 +309,9 @@ impl CullingStage {
     }
 
     /// What the last frame found.
-    pub(crate) fn counts(&self) -> CullingCounts {
+    pub(crate) fn object_stats(&self) -> ObjectStats {
         let s = self.culler.stats();
-        CullingCounts {
+        ObjectStats {
             visible: s.occludees_visible,
             outside: s.occludees_outside,
             occluded: s.occludees_occluded,
@@ -322,8 +322,8 @@ impl CullingStage {
         }
     }
 
-    /// All figures of the last frame.
-    pub(crate) fn figures(&self) -> CullingStats {
+    /// All stats of the last frame.
+    pub(crate) fn stats(&self) -> CullingStats {
         CullingStats {
             stats: self.culler.stats(),
             buffer: self.culler.size(),

@@ -3,9 +3,9 @@
 use crate::gpu::{Arriving, CpuTimer, Gpu, Handover, work_done};
 use crate::{Error, FrameStats};
 
-/// What the device counts, each where the settings ask for it.
+/// What the device counters, each where the settings ask for it.
 #[derive(Default)]
-pub(super) struct Counts<T> {
+pub(super) struct Counters<T> {
     /// Tiles per level of coarse shading.
     pub(super) tiles: Option<T>,
     /// Pixels of coarse shading that no tile's sample speaks for.
@@ -18,10 +18,10 @@ pub(super) struct Counts<T> {
     pub(super) rates: Option<T>,
 }
 
-/// A frame that the device has not finished, or whose figures have not arrived.
+/// A frame that the device has not finished, or whose counters have not arrived.
 pub(super) struct InFlight {
     pub(super) stats: FrameStats,
-    pub(super) counts: Counts<Arriving>,
+    pub(super) counters: Counters<Arriving>,
     /// The moment when it was done.
     pub(super) done: Handover<f64>,
 }
@@ -37,7 +37,7 @@ impl InFlight {
     pub(super) fn new(
         gpu: &Gpu,
         stats: FrameStats,
-        counters: &Counts<&wgpu::Buffer>,
+        buffers: &Counters<&wgpu::Buffer>,
         cpu: CpuTimer,
     ) -> Self {
         let mut encoder = None;
@@ -45,40 +45,47 @@ impl InFlight {
             let begin = || gpu.device.create_command_encoder(&Default::default());
             buffer.map(|buffer| Arriving::record(gpu, encoder.get_or_insert_with(begin), buffer))
         };
-        let counts = Counts {
-            tiles: record(counters.tiles),
-            unlit: record(counters.unlit),
-            kept: record(counters.kept),
-            edges: record(counters.edges),
-            rates: record(counters.rates),
+        let counters = Counters {
+            tiles: record(buffers.tiles),
+            unlit: record(buffers.unlit),
+            kept: record(buffers.kept),
+            edges: record(buffers.edges),
+            rates: record(buffers.rates),
         };
         if let Some(encoder) = encoder {
             gpu.queue.submit([encoder.finish()]);
         }
-        let all = counts.tiles.iter().chain(&counts.unlit).chain(&counts.kept);
-        for arriving in all.chain(&counts.edges).chain(&counts.rates) {
+        let all = counters
+            .tiles
+            .iter()
+            .chain(&counters.unlit)
+            .chain(&counters.kept);
+        for arriving in all.chain(&counters.edges).chain(&counters.rates) {
             arriving.submitted();
         }
         let done = work_done(gpu, move || cpu.since_start_ms());
         Self {
             stats,
-            counts,
+            counters,
             done,
         }
     }
 
     /// Waits until it is done: what the CPU knew of it, what the device counted, and how long it
     /// took.
-    pub(super) async fn wait(self, gpu: &Gpu) -> Result<(FrameStats, Counts<Vec<u8>>, f64), Error> {
+    pub(super) async fn wait(
+        self,
+        gpu: &Gpu,
+    ) -> Result<(FrameStats, Counters<Vec<u8>>, f64), Error> {
         let frame_ms = self.done.take(gpu).await?;
-        let counts = Counts {
-            tiles: bytes(self.counts.tiles, gpu).await?,
-            unlit: bytes(self.counts.unlit, gpu).await?,
-            kept: bytes(self.counts.kept, gpu).await?,
-            edges: bytes(self.counts.edges, gpu).await?,
-            rates: bytes(self.counts.rates, gpu).await?,
+        let counters = Counters {
+            tiles: bytes(self.counters.tiles, gpu).await?,
+            unlit: bytes(self.counters.unlit, gpu).await?,
+            kept: bytes(self.counters.kept, gpu).await?,
+            edges: bytes(self.counters.edges, gpu).await?,
+            rates: bytes(self.counters.rates, gpu).await?,
         };
-        Ok((self.stats, counts, frame_ms))
+        Ok((self.stats, counters, frame_ms))
     }
 }
 

@@ -57,7 +57,7 @@ impl Renderer {
     /// What the culler found in the last frame; `None` without culling.
     #[must_use]
     pub fn culling(&self) -> Option<CullingStats> {
-        self.stages.culling.as_ref().map(CullingStage::figures)
+        self.stages.culling.as_ref().map(CullingStage::stats)
     }
 
     /// What became of each of the scene's objects in the last frame; empty without culling.

@@ -101,7 +101,7 @@ impl Renderer {
         let environment = self.torn(environment)?;
         self.scene = uploaded;
         if let Some(stages) = stages {
-            // Its counts are read from targets that go.
+            // Its counters are read from targets that go.
             self.in_flight = None;
             self.stages = stages;
             self.rate_image_is_new = false;

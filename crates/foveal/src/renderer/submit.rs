@@ -4,7 +4,7 @@ use super::plan::{FramePlan, SampleChoice};
 use super::{Frame, Renderer, Seen, Stages, Target};
 use crate::ambient::{OcclusionUniform, Reach};
 use crate::antialias::Shadings;
-use crate::culling::{CullingCounts, has_cells, has_receivers};
+use crate::culling::{ObjectStats, has_cells, has_receivers};
 use crate::forward::TransmissionTargets;
 use crate::frame::FrameUniform;
 use crate::geometry::{Draws, ResolveAt};
@@ -73,7 +73,7 @@ impl Renderer {
     }
 
     /// Finds the visible objects, or keeps the last frame's while culling is frozen.
-    fn cull(&mut self, frame: &Frame<'_>, seen: &Seen) -> CullingCounts {
+    fn cull(&mut self, frame: &Frame<'_>, seen: &Seen) -> ObjectStats {
         let settings = &self.stages.settings;
         let objects = self.scene.stats.objects;
         if self.stages.culling.is_some() && has_cells(settings) {
@@ -81,16 +81,16 @@ impl Renderer {
         }
         match &mut self.stages.culling {
             Some(culling) if self.frozen && culling.visibility().len() == objects as usize => {
-                culling.counts()
+                culling.object_stats()
             }
             Some(culling) => {
                 let size = (settings.picture.width, settings.picture.height);
                 let eyes = settings.is_stereo().then_some(&seen.eyes);
                 culling.cull(&self.scene.culling, frame.camera, eyes, size, self.clock)
             }
-            None => CullingCounts {
+            None => ObjectStats {
                 visible: objects,
-                ..CullingCounts::default()
+                ..ObjectStats::default()
             },
         }
     }

@@ -100,7 +100,7 @@ impl CoarseShading {
         self.choice.is_made()
     }
 
-    /// The last frame's figures, for the `tiles` of each level and the pixels that none speaks for;
+    /// The last frame's stats, for the `tiles` of each level and the pixels that none speaks for;
     /// lets the choice of the backend know how long the passes took.
     pub(crate) fn stats(
         &mut self,

@@ -236,7 +236,7 @@ impl HistoryStage {
         kept.show(recorder, &targets.radiance_view);
     }
 
-    /// The figures of a frame that left these lists.
+    /// The stats of a frame that left these lists.
     pub(crate) fn stats(listed: &[u8], coarsest: u8, pixels: u64) -> CoarseStats {
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(listed);
         let levels = &words[1..=1 + usize::from(coarsest)];

@@ -143,9 +143,9 @@ impl VariableStage {
         }
     }
 
-    /// The figures of a frame whose passes took `gpu_ms` and which counted `listed`; `None`: it was
+    /// The stats of a frame whose passes took `gpu_ms` and which counted `listed`; `None`: it was
     /// shaded in full.
-    pub(crate) fn figures(
+    pub(crate) fn stats(
         &mut self,
         settings: &Settings,
         listed: Option<&[u8]>,

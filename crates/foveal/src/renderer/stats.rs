@@ -1,9 +1,9 @@
-//! A frame's figures: what the CPU knows at once, and what the device counts and times.
+//! A frame's stats: what the CPU knows at once, and what the device counts and times.
 
-use super::in_flight::{Counts, InFlight};
+use super::in_flight::{Counters, InFlight};
 use super::{Renderer, Stages};
 use crate::antialias::AntialiasStage;
-use crate::culling::CullingCounts;
+use crate::culling::ObjectStats;
 use crate::gpu::{Arriving, CpuTimer, ErrorTrap};
 use crate::output::Upscale;
 use crate::shading::{CountPass, HistoryStage};
@@ -12,7 +12,7 @@ use crate::{CoarseStats, Error, FrameStats, Timing};
 
 impl Renderer {
     /// The buffers that the device counts in.
-    pub(super) fn counters(&self) -> Counts<&wgpu::Buffer> {
+    pub(super) fn counters(&self) -> Counters<&wgpu::Buffer> {
         let stages = &self.stages;
         let tiles = match (&stages.coarse, &stages.targets.coarse, &stages.view) {
             (Some(coarse), Some(tiles), None) if coarse.is_active() => Some(tiles),
@@ -21,7 +21,7 @@ impl Renderer {
         let kept = tiles.and_then(|tiles| Some(&tiles.history.as_ref()?.listed));
         let tiles = tiles.filter(|_| kept.is_none());
         let samples = stages.targets.samples.as_ref();
-        Counts {
+        Counters {
             tiles: tiles.map(|tiles| &tiles.counts),
             unlit: tiles.and_then(|tiles| Some(&tiles.light.as_ref()?.unlit_count)),
             kept,
@@ -47,7 +47,7 @@ impl Renderer {
     }
 
     /// What the CPU knows of the frame that it has just submitted.
-    pub(super) fn submitted(&self, culled: CullingCounts, cpu: &CpuTimer) -> FrameStats {
+    pub(super) fn submitted(&self, culled: ObjectStats, cpu: &CpuTimer) -> FrameStats {
         let Stages {
             settings,
             submission: (submission, reason),
@@ -88,7 +88,7 @@ impl Renderer {
         }
     }
 
-    /// The frame in flight, once all of its figures are there.
+    /// The frame in flight, once all of its stats are there.
     pub(super) fn finished(&mut self) -> Result<Option<FrameStats>, Error> {
         #[cfg(not(target_arch = "wasm32"))]
         self.gpu.poll(wgpu::PollType::Poll)?;
@@ -99,17 +99,17 @@ impl Renderer {
         let arrived =
             |arriving: &Option<Arriving>| arriving.as_ref().is_none_or(Arriving::is_there);
         if !(in_flight.done.is_given()
-            && arrived(&in_flight.counts.tiles)
-            && arrived(&in_flight.counts.unlit)
-            && arrived(&in_flight.counts.kept)
-            && arrived(&in_flight.counts.edges)
-            && arrived(&in_flight.counts.rates))
+            && arrived(&in_flight.counters.tiles)
+            && arrived(&in_flight.counters.unlit)
+            && arrived(&in_flight.counters.kept)
+            && arrived(&in_flight.counters.edges)
+            && arrived(&in_flight.counters.rates))
         {
             return Ok(None);
         }
         let Some(InFlight {
             stats,
-            counts,
+            counters,
             done,
         }) = self.in_flight.take()
         else {
@@ -117,15 +117,15 @@ impl Renderer {
         };
         // Later frames may be finished too: the last one's times are as good.
         let gpu_ms = self.last_times();
-        let counts = Counts {
-            tiles: counts.tiles.and_then(|arriving| arriving.take()),
-            unlit: counts.unlit.and_then(|arriving| arriving.take()),
-            kept: counts.kept.and_then(|arriving| arriving.take()),
-            edges: counts.edges.and_then(|arriving| arriving.take()),
-            rates: counts.rates.and_then(|arriving| arriving.take()),
+        let counters = Counters {
+            tiles: counters.tiles.and_then(|arriving| arriving.take()),
+            unlit: counters.unlit.and_then(|arriving| arriving.take()),
+            kept: counters.kept.and_then(|arriving| arriving.take()),
+            edges: counters.edges.and_then(|arriving| arriving.take()),
+            rates: counters.rates.and_then(|arriving| arriving.take()),
         };
         let frame_ms = done.take_now().unwrap_or_default();
-        Ok(Some(self.figures(stats, &counts, gpu_ms, frame_ms)))
+        Ok(Some(self.frame_stats(stats, &counters, gpu_ms, frame_ms)))
     }
 
     /// What the passes of the last finished frame took; empty where none is finished.
@@ -140,21 +140,21 @@ impl Renderer {
         }
     }
 
-    /// All figures of a frame, from what the CPU knew, the bytes of the counters and the times.
-    pub(super) fn figures(
+    /// All stats of a frame, from what the CPU knew, the bytes of the counters and the times.
+    pub(super) fn frame_stats(
         &mut self,
         stats: FrameStats,
-        counts: &Counts<Vec<u8>>,
+        counters: &Counters<Vec<u8>>,
         gpu_ms: Vec<Timing>,
         frame_ms: f64,
     ) -> FrameStats {
-        let coarse = self.coarse_figures(counts, &gpu_ms);
+        let coarse = self.coarse_stats(counters, &gpu_ms);
         let coarse = coarse.or_else(|| stats.coarse.clone());
         let lit = self.stages.settings.picture.view.is_lit();
         let stages = &mut self.stages;
         let variable = stages.variable.as_mut().filter(|_| lit);
-        let bytes = counts.rates.as_deref();
-        let variable = variable.map(|v| v.figures(&stages.settings, bytes, &gpu_ms));
+        let bytes = counters.rates.as_deref();
+        let variable = variable.map(|v| v.stats(&stages.settings, bytes, &gpu_ms));
         let weighed = stages.coarse.as_mut().zip(coarse);
         let coarse = weighed.map(|(c, stats)| c.weigh(&stages.settings, &gpu_ms, stats));
         let stages = &self.stages;
@@ -168,15 +168,15 @@ impl Renderer {
         };
         let mut edge_fraction = 0.0;
         let mut surfaces_left_out = 0;
-        if let (Some(antialias), Some(bytes)) = (&stages.antialias, &counts.edges) {
-            let counts = AntialiasStage::counts(antialias, bytes, &stages.targets, pixels);
+        if let (Some(antialias), Some(bytes)) = (&stages.antialias, &counters.edges) {
+            let edges = AntialiasStage::stats(antialias, bytes, &stages.targets, pixels);
             if !antialias.needs_ordinary() && coarse.is_none() {
                 shaded_samples = 0;
             }
-            shaded_samples += u64::from(lit) * counts.evaluations;
-            edge_fraction = counts.edge_pixels as f64 / pixels as f64;
+            shaded_samples += u64::from(lit) * edges.evaluations;
+            edge_fraction = edges.edge_pixels as f64 / pixels as f64;
             if let Some(samples) = &mut self.stages.targets.samples {
-                surfaces_left_out = samples.note_wanted(counts.entries);
+                surfaces_left_out = samples.note_wanted(edges.entries);
             }
         }
         FrameStats {
@@ -214,13 +214,13 @@ impl Renderer {
     }
 
     /// What coarse shading did; tells the choice of the backend what the passes took.
-    fn coarse_figures(
+    fn coarse_stats(
         &mut self,
-        counts: &Counts<Vec<u8>>,
+        counters: &Counters<Vec<u8>>,
         gpu_ms: &[Timing],
     ) -> Option<CoarseStats> {
         let settings = &self.stages.settings;
-        if let Some(bytes) = &counts.kept {
+        if let Some(bytes) = &counters.kept {
             let pixels = EyeLayout::of(settings).pixels();
             return Some(HistoryStage::stats(
                 bytes,
@@ -228,9 +228,9 @@ impl Renderer {
                 pixels,
             ));
         }
-        let bytes = counts.tiles.as_ref()?;
+        let bytes = counters.tiles.as_ref()?;
         let tiles = CountPass::tiles(bytes, settings.coarse.coarsest_level);
-        let unlit = counts
+        let unlit = counters
             .unlit
             .as_ref()
             .map_or(0, |bytes| CountPass::tiles(bytes, 0)[0]);
