@@ -197,3 +197,24 @@ fn settings_need_the_scene_again_where_it_lacks_occluders_or_receivers() {
         }
     }
 }
+
+#[test]
+fn a_picture_that_is_too_large_is_refused_with_the_cullers_own_words() {
+    for scale in [1, 4] {
+        let most = foveal_cull::MAX_SIDE_PX * u32::from(scale);
+        let stage = |width| {
+            super::CullingStage::new(&Settings::default().with(|s| {
+                s.picture.width = width;
+                s.picture.height = 16;
+                s.culling.buffer_scale = scale;
+            }))
+        };
+        assert!(stage(most).is_ok());
+        let error = stage(most + 1).expect_err("it is too large").to_string();
+        assert!(
+            error.contains(&format!("the limit is {most}: raise occlusion-scale")),
+            "{error}"
+        );
+        assert!(error.contains("each side must be 1 to"), "{error}");
+    }
+}
