@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use foveal_scene::{Aabb, AlphaMode, Camera, Projection};
-use glam::Vec3;
+use foveal_scene::{AlphaMode, Camera};
 
+use super::sorted::{Blended, Item, Nearness, Sorted, key_of_strokes, key_of_triangles};
 use super::{Faces, PipelineKey, Shape};
 use crate::scene::{DrawnInstance, LobeClass, SceneOnGpu};
 use crate::stereo::Drawn;
@@ -38,48 +38,8 @@ pub(crate) struct DrawList {
     pub(crate) blended: Vec<Batch>,
     /// Triangles of all draws.
     pub(crate) triangles: u64,
-}
-
-/// The pipeline's key for an instance's points and lines. Lobes need a surface's tangents: they have
-/// none.
-fn key_of_strokes(instance: &DrawnInstance, lit: bool) -> PipelineKey {
-    PipelineKey {
-        class: instance.material_class,
-        masked: matches!(instance.alpha_mode, AlphaMode::Mask { .. }),
-        mirrored: false,
-        faces: Faces::Both,
-        lobes: LobeClass::default(),
-        shape: if lit {
-            Shape::LitStrokes
-        } else {
-            Shape::UnlitStrokes
-        },
-    }
-}
-
-/// How far from the eye an instance's box ends, in steps of a factor of 2. What is drawn from small
-/// to large hides what is behind before that is shaded: what ends near is near, whereas what begins
-/// near may be the ground. By an instance alone, so that what else is drawn does not change the
-/// order of two.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Nearness(u32);
-
-impl Nearness {
-    fn of(bounds: &Aabb, eye: Vec3) -> Self {
-        let farthest = (eye - bounds.min).abs().max((eye - bounds.max).abs());
-        // The exponent of a square, which is not negative: two of its steps are a factor of 2.
-        Self(farthest.length_squared().to_bits() >> 24)
-    }
-}
-
-/// What blended things are sorted by, from large to small: the depth of a box's centre in a parallel
-/// projection, its squared distance from the eye in a perspective.
-fn farness(bounds: &Aabb, camera: &Camera) -> f32 {
-    let away = bounds.center() - camera.eye();
-    match camera.projection {
-        Projection::Perspective { .. } => away.length_squared(),
-        Projection::Orthographic { .. } => -away.dot(camera.world_from_view.z_axis.truncate()),
-    }
+    /// What the draws are made of, kept for its room.
+    sorted: Sorted,
 }
 
 /// A scene and what a frame draws of it.
@@ -87,6 +47,109 @@ fn farness(bounds: &Aabb, camera: &Camera) -> f32 {
 pub(crate) struct Draws<'a> {
     pub(crate) scene: &'a SceneOnGpu,
     pub(crate) list: &'a DrawList,
+}
+
+/// Makes draws of instances that come one after the other.
+struct Batcher<'a> {
+    scene: &'a SceneOnGpu,
+    /// Equal ones become instances of one draw.
+    merge: bool,
+    /// Of the list.
+    drawn: &'a mut Vec<u32>,
+    triangles: &'a mut u64,
+}
+
+impl Batcher<'_> {
+    /// Appends an instance: to the last draw where that is alike.
+    fn push(&mut self, list: &mut Vec<Batch>, item: Item) {
+        let Item {
+            key,
+            material,
+            mesh,
+            instance,
+        } = item;
+        if key.shape == Shape::Triangles {
+            *self.triangles += u64::from(self.scene.geometry.mesh(mesh).index_count / 3);
+        }
+        let at = self.drawn.len() as u32;
+        self.drawn.push(instance);
+        if let Some(last) = list.last_mut()
+            && self.merge
+            && last.first + last.count == at
+            && (last.key, last.material, last.mesh) == (key, material, mesh)
+        {
+            last.count += 1;
+            return;
+        }
+        list.push(Batch {
+            key,
+            material,
+            mesh,
+            first: at,
+            count: 1,
+        });
+    }
+
+    fn lobes(&self, item: &Item) -> Option<LobeClass> {
+        self.scene.materials.lobes(item.material)
+    }
+
+    /// What the G-buffer shows.
+    fn solid(&mut self, list: &mut Vec<Batch>, solid: &[(Nearness, Item)]) {
+        for (_, item) in solid {
+            if !self.lobes(item).is_some_and(LobeClass::transmits) {
+                self.push(list, *item);
+            }
+        }
+    }
+
+    /// Those with lobes by which light passes, or does not.
+    fn lobed(&mut self, list: &mut Vec<Batch>, solid: &[(Nearness, Item)], transmits: bool) {
+        for &(_, item) in solid {
+            if let Some(lobes) = self.lobes(&item)
+                && lobes.transmits() == transmits
+            {
+                let key = PipelineKey { lobes, ..item.key };
+                self.push(list, Item { key, ..item });
+            }
+        }
+    }
+
+    fn blended(&mut self, list: &mut Vec<Batch>, blended: &[Blended]) {
+        for one in blended {
+            let instance = &self.scene.instances[one.instance as usize];
+            let of_key = |key| Item {
+                key,
+                material: instance.material,
+                mesh: instance.mesh,
+                instance: one.instance,
+            };
+            if one.shape != Shape::Triangles {
+                let is_lit = one.shape == Shape::LitStrokes;
+                self.push(list, of_key(key_of_strokes(instance, is_lit)));
+                continue;
+            }
+            // The far side of a two-sided thing lies behind its near side.
+            let sides: &[Faces] = if instance.double_sided {
+                &[Faces::Back, Faces::Front]
+            } else {
+                &[Faces::Front]
+            };
+            // What is behind shows by alpha.
+            let lobes = (self.scene.materials.lobes(instance.material))
+                .map_or_else(LobeClass::default, LobeClass::without_transmission);
+            for &faces in sides {
+                self.push(
+                    list,
+                    of_key(PipelineKey {
+                        faces,
+                        lobes,
+                        ..key_of_triangles(instance)
+                    }),
+                );
+            }
+        }
+    }
 }
 
 impl DrawList {
@@ -99,139 +162,37 @@ impl DrawList {
         merge: bool,
         is_visible: impl Fn(u32) -> bool,
     ) {
-        self.drawn.clear();
-        self.solid.clear();
-        self.lobed.clear();
-        self.strokes.clear();
-        self.transmissive.clear();
-        self.blended.clear();
-        self.triangles = 0;
-        let mut solid: Vec<(Nearness, PipelineKey, u32, u32, u32)> =
-            Vec::with_capacity(scene.instances.len());
-        let mut strokes: Vec<(PipelineKey, u32, u32, u32)> = Vec::new();
-        let mut blended: Vec<(f32, u32, Shape)> = Vec::new();
-        let all = (0..).zip(&scene.instances);
-        for (index, instance) in all.filter(|(_, instance)| instance.visible) {
-            let mesh = scene.geometry.mesh(instance.mesh);
-            let farness = || farness(&instance.bounds, camera);
-            // They reach beyond their boxes by half their width, so culling does not judge them.
-            if mesh.stroke_index_count > 0 {
-                let key = key_of_strokes(instance, mesh.lights_strokes);
-                if instance.alpha_mode == AlphaMode::Blend {
-                    blended.push((farness(), index, key.shape));
-                } else {
-                    strokes.push((key, instance.material, instance.mesh, index));
-                }
-            }
-            if mesh.index_count == 0 || !is_visible(instance.object) {
-                continue;
-            }
-            match instance.alpha_mode {
-                AlphaMode::Opaque | AlphaMode::Mask { .. } => {
-                    let key = PipelineKey {
-                        class: instance.material_class,
-                        masked: matches!(instance.alpha_mode, AlphaMode::Mask { .. }),
-                        mirrored: instance.mirrored,
-                        faces: if instance.double_sided {
-                            Faces::Both
-                        } else {
-                            Faces::Front
-                        },
-                        lobes: LobeClass::default(),
-                        shape: Shape::Triangles,
-                    };
-                    let nearness = Nearness::of(&instance.bounds, camera.eye());
-                    solid.push((nearness, key, instance.material, instance.mesh, index));
-                }
-                AlphaMode::Blend => blended.push((farness(), index, Shape::Triangles)),
-            }
-        }
-        solid.sort_unstable();
-        let batch = |(key, material, mesh, index)| Batch {
-            key,
-            material,
-            mesh,
-            first: 0,
-            count: index,
-        };
-        let Self {
-            solid: list,
-            drawn,
+        self.clear();
+        let (sorted, triangles) = (&mut self.sorted, &mut self.triangles);
+        sorted.find(scene, camera, is_visible);
+        let mut batcher = Batcher {
+            scene,
+            merge,
+            drawn: &mut self.drawn,
             triangles,
-            ..
-        } = self;
-        let lobes = |material| scene.materials.lobes(material);
-        for &(_, key, material, mesh, index) in &solid {
-            if !lobes(material).is_some_and(LobeClass::transmits) {
-                let one = batch((key, material, mesh, index));
-                Self::push(list, drawn, scene, merge, triangles, one);
-            }
-        }
+        };
         // One list after the other: a draw's instances follow each other in `drawn`.
-        for (transmits, to) in [(false, &mut self.lobed), (true, &mut self.transmissive)] {
-            for &(_, key, material, mesh, index) in &solid {
-                if let Some(lobes) = lobes(material)
-                    && lobes.transmits() == transmits
-                {
-                    let one = batch((PipelineKey { lobes, ..key }, material, mesh, index));
-                    Self::push(to, drawn, scene, merge, triangles, one);
-                }
-            }
+        batcher.solid(&mut self.solid, &sorted.solid);
+        batcher.lobed(&mut self.lobed, &sorted.solid, false);
+        batcher.lobed(&mut self.transmissive, &sorted.solid, true);
+        for item in &sorted.strokes {
+            batcher.push(&mut self.strokes, *item);
         }
-        strokes.sort_unstable();
-        for one in strokes {
-            Self::push(
-                &mut self.strokes,
-                drawn,
-                scene,
-                merge,
-                triangles,
-                batch(one),
-            );
+        batcher.blended(&mut self.blended, &sorted.blended);
+    }
+
+    fn clear(&mut self) {
+        self.drawn.clear();
+        for list in [
+            &mut self.solid,
+            &mut self.lobed,
+            &mut self.strokes,
+            &mut self.transmissive,
+            &mut self.blended,
+        ] {
+            list.clear();
         }
-        blended.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-        for (_, index, shape) in blended {
-            let instance = &scene.instances[index as usize];
-            if shape != Shape::Triangles {
-                let key = key_of_strokes(instance, shape == Shape::LitStrokes);
-                let one = batch((key, instance.material, instance.mesh, index));
-                let to = &mut self.blended;
-                Self::push(to, &mut self.drawn, scene, merge, &mut self.triangles, one);
-                continue;
-            }
-            // The far side of a two-sided thing lies behind its near side.
-            let sides: &[Faces] = if instance.double_sided {
-                &[Faces::Back, Faces::Front]
-            } else {
-                &[Faces::Front]
-            };
-            for &faces in sides {
-                let key = PipelineKey {
-                    class: instance.material_class,
-                    masked: false,
-                    mirrored: instance.mirrored,
-                    faces,
-                    // What is behind shows by alpha.
-                    lobes: (scene.materials.lobes(instance.material))
-                        .map_or_else(LobeClass::default, LobeClass::without_transmission),
-                    shape: Shape::Triangles,
-                };
-                Self::push(
-                    &mut self.blended,
-                    &mut self.drawn,
-                    scene,
-                    merge,
-                    &mut self.triangles,
-                    Batch {
-                        key,
-                        material: instance.material,
-                        mesh: instance.mesh,
-                        first: 0,
-                        count: index,
-                    },
-                );
-            }
-        }
+        self.triangles = 0;
     }
 
     /// Whether anything is drawn forward.
@@ -246,65 +207,36 @@ impl DrawList {
         instances: impl Iterator<Item = u32>,
         key: impl Fn(u32, bool) -> PipelineKey,
     ) -> Self {
-        let mut casters: Vec<_> = instances
-            .filter(|&index| {
-                let mesh = scene.instances[index as usize].mesh;
-                scene.geometry.mesh(mesh).index_count > 0
-            })
-            .map(|index| {
-                let instance = &scene.instances[index as usize];
+        let has_triangles = |instance: &DrawnInstance| {
+            let mesh = scene.geometry.mesh(instance.mesh);
+            mesh.index_count > 0
+        };
+        let mut casters: Vec<Item> = instances
+            .map(|number| (number, &scene.instances[number as usize]))
+            .filter(|(_, instance)| has_triangles(instance))
+            .map(|(number, instance)| {
                 let masked = matches!(instance.alpha_mode, AlphaMode::Mask { .. });
-                // What has no holes is drawn alike whatever its material.
-                let material = if masked { instance.material } else { 0 };
-                let key = key(instance.material_class, masked);
-                (key, material, instance.mesh, index)
+                Item {
+                    key: key(instance.material_class, masked),
+                    // What has no holes is drawn alike whatever its material.
+                    material: if masked { instance.material } else { 0 },
+                    mesh: instance.mesh,
+                    instance: number,
+                }
             })
             .collect();
         casters.sort_unstable();
         let mut list = Self::default();
-        for (key, material, mesh, index) in casters {
-            let batch = Batch {
-                key,
-                material,
-                mesh,
-                first: 0,
-                count: index,
-            };
-            let (solid, drawn, triangles) = (&mut list.solid, &mut list.drawn, &mut list.triangles);
-            Self::push(solid, drawn, scene, true, triangles, batch);
+        let mut batcher = Batcher {
+            scene,
+            merge: true,
+            drawn: &mut list.drawn,
+            triangles: &mut list.triangles,
+        };
+        for item in casters {
+            batcher.push(&mut list.solid, item);
         }
         list
-    }
-
-    /// Appends one instance (`batch.count` is its number), to the last draw where that is alike.
-    fn push(
-        list: &mut Vec<Batch>,
-        drawn: &mut Vec<u32>,
-        scene: &SceneOnGpu,
-        merge: bool,
-        triangles: &mut u64,
-        batch: Batch,
-    ) {
-        if batch.key.shape == Shape::Triangles {
-            *triangles += u64::from(scene.geometry.mesh(batch.mesh).index_count / 3);
-        }
-        let instance = batch.count;
-        match list.last_mut() {
-            Some(last)
-                if merge
-                    && last.first + last.count == drawn.len() as u32
-                    && (last.key, last.material, last.mesh)
-                        == (batch.key, batch.material, batch.mesh) =>
-            {
-                last.count += 1;
-            }
-            _ => list.push(Batch {
-                first: drawn.len() as u32,
-                count: 1,
-                ..batch
-            }),
-        }
-        drawn.push(instance);
     }
 
     /// Issues `batches` into a pass that has bind group 0 and the geometry bound, `drawn` for one
@@ -374,24 +306,10 @@ impl DrawList {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use foveal_scene::Projection;
+    use glam::Vec3;
 
-    #[test]
-    fn what_ends_near_is_nearer_than_the_ground_below_the_eye() {
-        let eye = Vec3::new(1.0, 2.0, 3.0);
-        let around = |half: Vec3, away: Vec3| Aabb {
-            min: eye + away - half,
-            max: eye + away + half,
-        };
-        let nearness = |half, away| Nearness::of(&around(half, away), eye);
-        let small = nearness(Vec3::splat(0.5), Vec3::X * 2.0);
-        let ground = nearness(Vec3::new(50.0, 0.1, 50.0), -2.0 * Vec3::Y);
-        assert!(small < ground);
-        // Within a factor of 2 state changes decide.
-        let farther = |by: f32| nearness(Vec3::ZERO, Vec3::Z * by);
-        assert_eq!(farther(2.9), farther(5.5));
-        assert!(farther(2.7) < farther(2.9) && farther(5.5) < farther(5.8));
-    }
+    use super::*;
 
     #[test]
     fn two_draws_keep_their_order_whatever_else_is_drawn() {
@@ -399,16 +317,18 @@ mod tests {
         let renderer =
             crate::testing::rendered(&scene, &scene.cameras[0], &crate::testing::small(16, 16));
         let scene_on_gpu = renderer.scene();
-        let order = |is_visible: &dyn Fn(u32) -> bool| {
-            let mut list = DrawList::default();
+        let mut list = DrawList::default();
+        let mut order = |is_visible: &dyn Fn(u32) -> bool| {
             list.build(scene_on_gpu, &scene.cameras[0], true, is_visible);
-            list.drawn
+            list.drawn.clone()
         };
         let all = order(&|_| true);
         let some = order(&|object| object % 3 == 0);
         let expected: Vec<u32> = all.iter().copied().filter(|i| some.contains(i)).collect();
         assert!(some.len() < all.len() && !some.is_empty());
         assert_eq!(some, expected);
+        // A list that is built again holds nothing of the frame before.
+        assert_eq!(order(&|_| true), all);
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod gbuffer;
 mod pipelines;
 #[cfg(test)]
 mod procedural;
+mod sorted;
 mod target;
 #[cfg(test)]
 mod twin;
