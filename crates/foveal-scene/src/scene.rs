@@ -97,30 +97,32 @@ impl fmt::Display for Warning {
 pub struct Scene {
     /// File name or the generator's name.
     pub name: String,
-    /// Geometry.
+    /// Meshes, indexed by [`Instance::mesh`].
     pub meshes: Vec<Mesh>,
-    /// Surfaces.
+    /// Materials, indexed by [`Instance::material`].
     pub materials: Vec<Material>,
-    /// Pictures.
+    /// Textures, indexed by [`TextureRef::texture`](crate::TextureRef::texture).
     pub textures: Vec<Texture>,
-    /// Things.
+    /// Objects, indexed by [`Instance::object`].
     pub objects: Vec<Object>,
-    /// What is drawn.
+    /// Instances: what is drawn. Those of an object follow each other
+    /// ([`Object::instances`]).
     pub instances: Vec<Instance>,
-    /// Punctual lights.
+    /// Punctual lights, world space.
     pub lights: Vec<Light>,
     /// Cameras of the file or the generator, in order.
     pub cameras: Vec<Camera>,
     /// Backdrop and ambient light.
     pub environment: Environment,
-    /// The file's own, more exact one, where it has one.
+    /// The file's own environment of pictures, where it has one: more exact than `environment`.
     pub image_light: Option<ImageLight>,
     /// Names of the file's variants of materials;
     /// [`LoadOptions::variant`](crate::LoadOptions::variant) chooses one.
     pub variants: Vec<String>,
-    /// What the importer could not honour.
+    /// Warnings of the importer: parts of the file that it could not honour.
     pub warnings: Vec<Warning>,
-    /// How it moves; opaque, still by default. See [`Scene::pose`].
+    /// Animations, with their nodes, skins and morph targets, that [`Scene::pose`] plays; none by
+    /// default.
     pub rig: Rig,
     /// How long loading took; zero for generated scenes.
     pub timings: LoadTimings,

@@ -101,7 +101,7 @@ pub struct Metric {
 }
 
 impl Metric {
-    /// For pictures of `width` times `height` pixels that fill the display.
+    /// A metric for pictures of `width` times `height` pixels that fill the display.
     ///
     /// # Errors
     /// Sizes, gazes and displays that [`VdpError`] names.
@@ -129,7 +129,7 @@ impl Metric {
         })
     }
 
-    /// In the display's middle.
+    /// Pixels per degree of the visual field in the display's middle.
     #[must_use]
     pub fn pixels_per_degree(&self) -> f32 {
         self.pixels_per_degree

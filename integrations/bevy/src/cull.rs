@@ -279,8 +279,8 @@ impl ViewCuller {
         true
     }
 
-    /// Besides what is hidden removes what a condition does not hold for: an entity at a place of the
-    /// list and its box. Returns how many these are.
+    /// Marks further results as hidden: those whose entity in `list` and box `condition` does not
+    /// hold for. Returns how many it has marked.
     #[cfg(feature = "bevy_light")]
     pub(crate) fn keep(
         &mut self,

@@ -17,25 +17,26 @@ use super::volume::Volume;
 pub(super) struct Kept {
     pub(super) tile: Tile,
     pub(super) volume: Volume,
-    /// It holds the shadows of the pose, but for those of what is left out.
+    /// Whether its texels are right for the current pose, but for the casters in `left_out`.
     pub(super) is_drawn: bool,
-    /// While it does not: the patch beside which it does; `None` where all of it is wrong.
+    /// Where `is_drawn` is false: the patch of wrong texels; `None` where all are wrong.
     pub(super) wrong: Option<Patch>,
-    /// What it was drawn for last.
+    /// The volume that its texels were drawn for; `None` before they are.
     held: Option<Volume>,
-    /// Casters that it was drawn without, as nobody has seen their shadows yet: instances, ascending.
+    /// Casters that are not drawn, because their shadows fall on nothing seen so far: instances,
+    /// ascending.
     pub(super) left_out: Vec<u32>,
-    /// What it has been drawn for: shadows of what is left out fall on none of it.
+    /// The receivers that it was drawn for, on which no caster in `left_out` casts a shadow.
     pub(super) received: Option<Box<Received>>,
-    /// The frame that found last that it sees nothing of what the camera sees.
+    /// The frame in which it was looked at last, if its volume held no seen receiver then.
     pub(super) sees_nothing_in: Option<u64>,
-    /// The frame that wanted it last.
+    /// The last frame that wanted it.
     wanted_in: u64,
-    /// The frame after which it had to be drawn again last.
+    /// The last frame after which it had to be drawn again.
     disturbed_in: Option<u64>,
-    /// The frame before had to draw it again too.
+    /// Whether it had to be drawn again after two frames in a row.
     pub(super) is_restless: bool,
-    /// That, and its light has moved now.
+    /// Whether it is restless and its light has moved since it was drawn.
     pub(super) light_moves: bool,
 }
 
