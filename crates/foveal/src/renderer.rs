@@ -15,12 +15,14 @@ use crate::rate::RateImage;
 use crate::scene::{ArrayLimits, FrameBindings, SceneOnGpu, material_layout};
 use crate::shading::{HistoryStage, ShadingPass, VariableStage};
 use crate::shadow::ShadowStage;
-use crate::stereo::{Eye, EyeLayout, LensFit, Submission, Trials};
+use crate::stereo::{Eye, LensFit, Submission, Trials};
 use crate::targets::Targets;
 use crate::{Clock, Error, FrameStats, Settings, Target};
+use change::Change;
 use coarse::CoarseStages;
 use in_flight::InFlight;
 
+mod change;
 mod coarse;
 mod environment;
 #[cfg(test)]
@@ -257,61 +259,47 @@ impl Renderer {
 
     /// Takes over other settings of what is drawn.
     async fn draw_with(&mut self, settings: &Settings) -> Result<(), Error> {
-        let old = &self.stages.settings;
-        if *settings == *old {
+        let keeps_light = |s: &Settings| HistoryStage::is_used(&self.gpu, s);
+        let change = Change::between(&self.stages.settings, settings, keeps_light);
+        if change == Change::Nothing {
             return Ok(());
         }
         let trap = ErrorTrap::new(&self.gpu, "copying geometry for shaders");
         let readable = (self.scene.geometry).readable(&self.gpu, settings.geometry.path);
         trap.finish().await?;
         self.scene.geometry.take_readable(readable?);
-        let stroked = old.clone().with(|s| {
-            s.geometry.point_size_px = settings.geometry.point_size_px;
-            s.geometry.line_width_px = settings.geometry.line_width_px;
-        });
-        let sized = stroked.clone().with(|s| {
-            s.picture.width = settings.picture.width;
-            s.picture.height = settings.picture.height;
-        });
-        let looking = stroked.with(|s| {
-            s.eye.gaze = settings.eye.gaze;
-            s.stereo.gaze_shift = settings.stereo.gaze_shift;
-        });
-        // With a gaze of its own each eye has a picture of its own.
-        let is_laid_out = EyeLayout::of(old) == EyeLayout::of(settings);
-        if looking == *settings && is_laid_out {
-            self.stages.settings = settings.clone();
-            return Ok(());
+        match change {
+            Change::Nothing | Change::Frame => {}
+            Change::Light => self.stages.forget_light(),
+            Change::Size => self.resize(settings).await?,
+            Change::Stages => return self.make_stages(settings).await,
         }
-        let lit = looking.with(|s| {
-            s.lighting.environment_intensity = settings.lighting.environment_intensity;
-            s.lighting.environment_rotation_deg = settings.lighting.environment_rotation_deg;
-            s.lighting.environment_image = settings.lighting.environment_image.clone();
-            s.lighting.ambient_occlusion_radius_m = settings.lighting.ambient_occlusion_radius_m;
-        });
-        if lit == *settings && is_laid_out {
-            self.stages.settings = settings.clone();
-            self.stages.forget_light();
-            return Ok(());
-        }
+        self.stages.settings = settings.clone();
+        Ok(())
+    }
+
+    /// Makes what depends on the target's size for other settings, which only differ in that.
+    async fn resize(&mut self, settings: &Settings) -> Result<(), Error> {
         // Its counters are read from targets that go.
         self.in_flight = None;
-        let keeps_light = |s: &Settings| HistoryStage::is_used(&self.gpu, s);
-        if sized == *settings && keeps_light(old) == keeps_light(settings) {
-            let mut culling = CullingStage::new(settings)?;
-            let trap = ErrorTrap::new(&self.gpu, "resizing the targets");
-            let submission = self.stages.submission.0;
-            let targets = Targets::new(&self.gpu, settings, submission);
-            trap.finish().await?;
-            self.stages.targets = targets;
-            self.stages.geometry.resize(settings);
-            self.stages.forward.resize(settings);
-            self.keep_frozen(culling.as_mut());
-            self.stages.forget();
-            self.stages.culling = culling;
-            self.stages.settings = settings.clone();
-            return Ok(());
-        }
+        let mut culling = CullingStage::new(settings)?;
+        let trap = ErrorTrap::new(&self.gpu, "resizing the targets");
+        let submission = self.stages.submission.0;
+        let targets = Targets::new(&self.gpu, settings, submission);
+        trap.finish().await?;
+        self.stages.targets = targets;
+        self.stages.geometry.resize(settings);
+        self.stages.forward.resize(settings);
+        self.keep_frozen(culling.as_mut());
+        self.stages.forget();
+        self.stages.culling = culling;
+        Ok(())
+    }
+
+    /// Makes all stages for other settings.
+    async fn make_stages(&mut self, settings: &Settings) -> Result<(), Error> {
+        // Its counters are read from targets that go.
+        self.in_flight = None;
         let mut stages = self.new_stages(settings, None).await?;
         self.keep_frozen(stages.culling.as_mut());
         let around = (&self.scene.environment, self.scene.image_light.as_ref());
