@@ -12,12 +12,32 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use common::{folder, moving_triangle, names, spawn_in, stderr, succeed};
+use common::{fail, folder, moving_triangle, names, spawn_in, stderr, succeed};
 
 const SIZE: [&str; 2] = ["--size", "48x32"];
 
 fn bytes(folder: &Path, name: &str) -> Vec<u8> {
     fs::read(folder.join(name)).unwrap()
+}
+
+#[test]
+fn the_folder_of_a_sequence_is_made_once_the_scene_is_there() {
+    let folder = folder();
+    let here = folder.path();
+    let run = |scene: &'static str, output: &'static str| {
+        let words = ["render", scene, "-o", output, "--frames", "2", "--quiet"];
+        [&words[..], &SIZE].concat()
+    };
+    fail(here, &run("missing.gltf", "new/##.png"), &["missing.gltf"]);
+    assert!(names(here).is_empty());
+    moving_triangle(here);
+    succeed(here, &run("triangle.gltf", "new/##.png"));
+    assert_eq!(names(&here.join("new")), ["00.png", "01.png"]);
+    fail(
+        here,
+        &run("triangle.gltf", "a/b/##.png"),
+        &["'a' does not exist"],
+    );
 }
 
 #[test]

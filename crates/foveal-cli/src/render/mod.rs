@@ -10,7 +10,7 @@ mod sharing;
 mod stats;
 mod summary;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::thread;
 
@@ -50,7 +50,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     let first = jobs.first().and_then(|job| job.file.as_ref());
     let first = first.filter(|_| !args.is_piped());
-    for file in first.into_iter().chain(&args.video).chain(&args.stats) {
+    let new_folder = first.and_then(|file| missing_folder(args, file));
+    let place = new_folder.as_ref().or(first);
+    for file in place.into_iter().chain(&args.video).chain(&args.stats) {
         atomic_file::check_writable(file)?;
     }
     args.video.as_deref().map_or(Ok(()), video::check)?;
@@ -92,6 +94,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     };
     for frames in (1..=args.warmup).rev() {
         draw(&mut drawing, jobs[0].moment, frames)?;
+    }
+    if let Some(folder) = &new_folder {
+        make_folder(folder)?;
     }
     let video = match &args.video {
         Some(file) => Some(Video::create(
@@ -162,6 +167,21 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         console::note(&summary::text(&run, open - run.frames.len() as u64));
     }
     Ok(())
+}
+
+/// The folder of a sequence, where it is missing.
+fn missing_folder(args: &Args, file: &Path) -> Option<PathBuf> {
+    let folder = file.parent()?;
+    let is_missing = args.frames.frames.is_some() && folder != Path::new("") && !folder.exists();
+    is_missing.then(|| folder.to_owned())
+}
+
+/// Makes a folder that another job may have made since it was missing.
+fn make_folder(folder: &Path) -> anyhow::Result<()> {
+    match std::fs::create_dir(folder) {
+        Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => Ok(()),
+        made => made.with_context(|| format!("cannot make the folder '{}'", folder.display())),
+    }
 }
 
 /// The pictures to draw.
