@@ -123,7 +123,9 @@ impl From<CullError> for Fault {
     fn from(error: CullError) -> Self {
         use FovealCullStatus as Status;
         let status = match error {
-            CullError::BadSize { .. } | CullError::BadShadowMap { .. } => Status::BadSize,
+            CullError::BadSize { .. }
+            | CullError::BadShadowMap { .. }
+            | CullError::BadReference { .. } => Status::BadSize,
             CullError::NotFinite(_) => Status::NotFinite,
             CullError::BadView(_) => Status::BadView,
             CullError::NotTriangles { .. } | CullError::IndexOutOfRange { .. } => {

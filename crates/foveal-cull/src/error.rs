@@ -24,6 +24,15 @@ pub enum CullError {
         /// Requested side, texels.
         side_px: u32,
     },
+    /// A reference of 0 samples per side, or of more than four times
+    /// [`MAX_SIDE_PX`](crate::MAX_SIDE_PX).
+    #[non_exhaustive]
+    BadReference {
+        /// Requested width, samples.
+        width: u32,
+        /// Requested height, samples.
+        height: u32,
+    },
     /// A number is NaN or infinite where it must be finite.
     NotFinite(Quantity),
     /// A view cannot be culled for.
@@ -158,6 +167,11 @@ impl fmt::Display for CullError {
             Self::BadShadowMap { side_px } => write!(
                 f,
                 "shadow map of {side_px} texels per side: must be 1 to {}",
+                4 * crate::limits::MAX_SIDE_PX
+            ),
+            Self::BadReference { width, height } => write!(
+                f,
+                "reference of {width} x {height} samples: each side must be 1 to {} samples",
                 4 * crate::limits::MAX_SIDE_PX
             ),
             Self::NotFinite(quantity) => write!(f, "{quantity} must be finite"),

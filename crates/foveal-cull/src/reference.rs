@@ -10,6 +10,7 @@
 use crate::bounds::Aabb;
 use crate::camera::Camera;
 use crate::error::CullError;
+use crate::limits::MAX_SIDE_PX;
 use crate::projection::clip::{ClipPolygon, NEAR};
 use crate::transform::Affine;
 use crate::view::{Eye, View};
@@ -49,15 +50,24 @@ pub struct Reference {
     camera: Camera,
 }
 
+/// The largest width and height of a reference, samples: those of the largest culler. Its depth
+/// takes 1 GiB.
+pub const MAX_SIDE_SAMPLES: u32 = 4 * MAX_SIDE_PX;
+
 const TILE: usize = 16;
 
 impl Reference {
     /// An empty reference of `width` x `height` samples. For n times the resolution of a culler,
-    /// pass n times its size.
+    /// pass n times its size. It takes 4 bytes a sample.
     ///
     /// # Errors
+    /// [`CullError::BadReference`] for a side of 0 or of more than [`MAX_SIDE_SAMPLES`],
     /// [`CullError::BadView`] or [`CullError::NotFinite`] for a bad view.
     pub fn new(eye: &Eye, width: u32, height: u32) -> Result<Self, CullError> {
+        let is_side = |side| (1..=MAX_SIDE_SAMPLES).contains(&side);
+        if !is_side(width) || !is_side(height) {
+            return Err(CullError::BadReference { width, height });
+        }
         let (w, h) = (width as usize, height as usize);
         let camera = Camera::new(&View::mono(*eye), f64::from(width), f64::from(height))?;
         Ok(Self {
@@ -355,5 +365,30 @@ impl Reference {
         }
         let d = depth(t0).min(1.0);
         (d >= self.camera.far_depth).then_some(d)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::view::Projection;
+
+    #[test]
+    fn a_reference_without_samples_or_of_too_many_is_refused() {
+        let lens = Projection::perspective(1.0, 1.0, 0.1, 9.0);
+        let eye = Eye::look_at([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0], lens);
+        for side in [0, MAX_SIDE_SAMPLES + 1, u32::MAX] {
+            for (width, height) in [(side, 3), (3, side)] {
+                let error = Reference::new(&eye, width, height).err().unwrap();
+                assert_eq!(error, CullError::BadReference { width, height });
+                let limit = format!("1 to {MAX_SIDE_SAMPLES} samples");
+                assert!(error.to_string().contains(&limit), "{error}");
+            }
+        }
+        for (width, height) in [(1, 1), (MAX_SIDE_SAMPLES, 1), (1, MAX_SIDE_SAMPLES)] {
+            let mut reference = Reference::new(&eye, width, height).unwrap();
+            reference.finish();
+            assert_eq!(reference.depth().len(), (width * height) as usize);
+        }
     }
 }
