@@ -18,12 +18,12 @@
  * an origin. The front of a triangle is the side that (b - a) x (c - a) points to.
  *
  * Errors. Functions return a FovealCullStatus. Noticed are null and misaligned pointers, wrong lengths,
- * arrays for results that overlap the boxes or ids of the same call, numbers that are not finite, ids of
- * removed objects and of other sets, unknown enumerators, structs of another version, and an object that
- * another thread is changing. Not noticed, and undefined as in free(), are destroyed objects, arrays that
- * are shorter than said, and structs that are smaller than their `size`, or the size given to a function
- * named _sized, says: up to 4,096 bytes of that are read or written. A function that fails leaves its result
- * as it was or null, and its object unchanged, unless it says otherwise.
+ * arrays for results that overlap the boxes or ids of the same call, numbers that are not finite or out of
+ * their range, ids of removed objects and of other sets, unknown enumerators, structs of another version,
+ * and an object that another thread is changing. Not noticed, and undefined as in free(), are destroyed
+ * objects, arrays that are shorter than said, and structs that are smaller than their `size`, or the size
+ * given to a function named _sized, says: up to 4,096 bytes of that are read or written. A function that
+ * fails leaves its result as it was or null, and its object unchanged, unless it says otherwise.
  *
  * Threads. Functions that take const objects may be called from many threads at once. A function that
  * changes an object returns FOVEAL_CULL_BUSY while another call uses it, and so do calls that use an
@@ -66,7 +66,7 @@ typedef enum FovealCullStatus {
      * overlaps the boxes or ids of the call, an id to be removed is listed twice, or a rebuild is not built
      * yet or was adopted. */
     FOVEAL_CULL_BAD_ARGUMENT = 3,
-    /* A number is NaN or infinite that must be finite. */
+    /* A number is not finite, or out of its range: negative, or zero where it must be above zero. */
     FOVEAL_CULL_NOT_FINITE = 4,
     /* A buffer side of 0 pixels or of more than 4,096, or a picture's or a shadow map's of 0 or of more than
      * 16,384. */
@@ -208,7 +208,7 @@ typedef struct FovealCullView {
     uint32_t eye_count;
     /* The eye, or the left and the right one. */
     FovealCullEye eyes[2];
-    /* Distance that each eye may move while the results hold, metres; 0 for the given places. */
+    /* Distance that each eye may move while the results hold, metres; 0 for the given places, not negative. */
     double validity_radius_m;
 } FovealCullView;
 
@@ -319,11 +319,11 @@ FovealCullStatus foveal_cull_mesh_bake(const FovealCullMeshSource *source, Fovea
 FovealCullStatus foveal_cull_mesh_from_box(const float *min, const float *max, FovealCullMesh **out);
 
 /* Bakes a terrain of a grid of heights that is seen from above (+y): sample i of row j lies at x =
- * i * spacing_x, y = heights[j * columns + i], z = j * spacing_z, metres. Every `step`th sample is kept, and
- * the surface lies under the terrain everywhere: fewer triangles, which hide somewhat less. NaN is a hole:
- * cells with one are left out. The ground is solid besides: nothing may be seen under the surface, neither
- * through its sides nor, except over holes, from below. A step of 0 is one of 1. Heights are aligned as
- * floats are: other than a source's positions. */
+ * i * spacing_x, y = heights[j * columns + i], z = j * spacing_z, metres. Spacings are above 0. Every
+ * `step`th sample is kept, and the surface lies under the terrain everywhere: fewer triangles, which hide
+ * somewhat less. NaN is a hole: cells with one are left out. The ground is solid besides: nothing may be seen
+ * under the surface, neither through its sides nor, except over holes, from below. A step of 0 is one of 1.
+ * Heights are aligned as floats are: other than a source's positions. */
 FovealCullStatus foveal_cull_mesh_from_heights(const float *heights, size_t columns, size_t rows,
                                                float spacing_x, float spacing_z, size_t step,
                                                FovealCullMesh **out);

@@ -20,7 +20,7 @@ pub enum FovealCullStatus {
     /// overlaps the boxes or ids of the call, an id to be removed is listed twice, or a rebuild is not
     /// built yet or was adopted.
     BadArgument = 3,
-    /// A number is NaN or infinite that must be finite.
+    /// A number is not finite, or out of its range: negative, or zero where it must be above zero.
     NotFinite = 4,
     /// A buffer side of 0 pixels or of more than 4,096, or a shadow map's of 0 texels or of more than
     /// 16,384.
@@ -74,7 +74,7 @@ impl FovealCullStatus {
             Self::NullPointer => c"a pointer is null that may not be",
             Self::BadStructSize => c"a struct's size is none that this version knows",
             Self::BadArgument => c"an argument is not allowed",
-            Self::NotFinite => c"a number must be finite",
+            Self::NotFinite => c"a number is not finite, or out of its range",
             Self::BadSize => {
                 c"a buffer's side must be 1 to 4096 pixels, a shadow map's 1 to 16384 texels"
             }
@@ -126,7 +126,9 @@ impl From<CullError> for Fault {
             CullError::BadSize { .. }
             | CullError::BadShadowMap { .. }
             | CullError::BadReference { .. } => Status::BadSize,
-            CullError::NotFinite(_) => Status::NotFinite,
+            CullError::NotFinite(_) | CullError::NotPositive(_) | CullError::Negative(_) => {
+                Status::NotFinite
+            }
             CullError::BadView(_) => Status::BadView,
             CullError::NotTriangles { .. } | CullError::IndexOutOfRange { .. } => {
                 Status::BadIndices

@@ -43,8 +43,11 @@ impl Camera {
     /// Checks a view and reduces it; `width` and `height` in samples.
     pub(crate) fn new(view: &View, width: f64, height: f64) -> Result<Self, CullError> {
         view.eye.check()?;
-        if !(view.validity_radius_m.is_finite() && view.validity_radius_m >= 0.0) {
+        if !view.validity_radius_m.is_finite() {
             return Err(CullError::NotFinite(Quantity::ValidityRadius));
+        }
+        if view.validity_radius_m < 0.0 {
+            return Err(CullError::Negative(Quantity::ValidityRadius));
         }
         let (eye, to_eye) = match view.second_eye {
             None => (view.eye, DVec3::ZERO),

@@ -148,8 +148,8 @@ impl Culler {
     /// until the next successful one.
     ///
     /// # Errors
-    /// [`CullError::BadView`] or [`CullError::NotFinite`] for a bad view. Everything is then
-    /// visible until the next successful one.
+    /// [`CullError::BadView`], [`CullError::NotFinite`] or [`CullError::Negative`] (its validity
+    /// radius) for a bad view. Everything is then visible until the next successful one.
     pub fn rasterize(
         &mut self,
         view: &View,

@@ -35,6 +35,10 @@ pub enum CullError {
     },
     /// A number is NaN or infinite where it must be finite.
     NotFinite(Quantity),
+    /// A number is zero or less where it must be above zero.
+    NotPositive(Quantity),
+    /// A number is less than zero where it must not be.
+    Negative(Quantity),
     /// A view cannot be culled for.
     BadView(ViewError),
     /// The length of an index list is not a multiple of three.
@@ -108,13 +112,13 @@ pub enum MeshBytesError {
     Invalid(&'static str),
 }
 
-/// An input that must be finite.
+/// An input that consists of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Quantity {
     /// A vertex position of a mesh, or a height.
     Position,
-    /// The distance between the samples of a grid of heights. It must be above zero, too.
+    /// The distance between the samples of a grid of heights.
     Spacing,
     /// The transform of an occluder.
     Transform,
@@ -124,7 +128,7 @@ pub enum Quantity {
     ClipMatrix,
     /// An extent or a distance of a projection. (A perspective far distance may be infinite.)
     Projection,
-    /// The validity radius of a view. It must not be negative either.
+    /// The validity radius of a view.
     ValidityRadius,
 }
 
@@ -175,6 +179,8 @@ impl fmt::Display for CullError {
                 4 * crate::limits::MAX_SIDE_PX
             ),
             Self::NotFinite(quantity) => write!(f, "{quantity} must be finite"),
+            Self::NotPositive(quantity) => write!(f, "{quantity} must be above zero"),
+            Self::Negative(quantity) => write!(f, "{quantity} must not be negative"),
             Self::BadView(_) => f.write_str("the view cannot be culled for"),
             Self::NotTriangles { indices } => {
                 write!(f, "{indices} indices are not a whole number of triangles")
@@ -204,12 +210,12 @@ impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Position => "a vertex position",
-            Self::Spacing => "the spacing of heights (which must be above zero)",
+            Self::Spacing => "the spacing of heights",
             Self::Transform => "the transform of an occluder",
             Self::Pose => "the pose of an eye",
             Self::ClipMatrix => "a matrix from the world to clip space",
             Self::Projection => "a projection's extents and distances",
-            Self::ValidityRadius => "the validity radius (which must not be negative)",
+            Self::ValidityRadius => "the validity radius",
         })
     }
 }

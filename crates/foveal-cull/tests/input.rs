@@ -175,18 +175,31 @@ fn a_view_that_is_refused_says_why() {
         let source = std::error::Error::source(&error).unwrap();
         assert_eq!(source.to_string(), cause.to_string());
     }
-    for (view, quantity) in [
-        (View::mono(perspective(f64::NAN, 9.0)), Quantity::Projection),
+    let radius = |radius_m| View::mono(good).with_validity_radius(radius_m);
+    for (view, expected, text) in [
         (
-            View::mono(good).with_validity_radius(-1.0),
-            Quantity::ValidityRadius,
+            View::mono(perspective(f64::NAN, 9.0)),
+            CullError::NotFinite(Quantity::Projection),
+            "a projection's extents and distances must be finite",
+        ),
+        (
+            radius(f64::INFINITY),
+            CullError::NotFinite(Quantity::ValidityRadius),
+            "the validity radius must be finite",
+        ),
+        (
+            radius(-1.0),
+            CullError::Negative(Quantity::ValidityRadius),
+            "the validity radius must not be negative",
         ),
         (
             View::perspective(DVec3::NAN, DVec3::NEG_Z, DVec3::Y, 1.0, 1.0, 0.1),
-            Quantity::Pose,
+            CullError::NotFinite(Quantity::Pose),
+            "the pose of an eye must be finite",
         ),
     ] {
-        assert_eq!(error(view), CullError::NotFinite(quantity));
+        let error = error(view);
+        assert_eq!((error, error.to_string().as_str()), (expected, text));
     }
 }
 

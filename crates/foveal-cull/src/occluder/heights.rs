@@ -35,11 +35,11 @@ impl OccluderMesh {
     /// ```
     ///
     /// # Errors
-    /// [`CullError::LengthMismatch`] if the heights are not whole rows, [`CullError::NotFinite`] for an
-    /// infinite height, for one that is lowered beyond what `f32` holds or for a spacing that is not
-    /// above zero, [`CullError::TooManyTriangles`]. A
-    /// `step` of 0 is one of 1, and fewer than two rows or columns have no triangles.
-    /// `options.deformable` is not looked at.
+    /// [`CullError::LengthMismatch`] if the heights are not whole rows, [`CullError::NotFinite`]
+    /// for a spacing that is not finite, an infinite height, or a vertex beyond what `f32` holds,
+    /// [`CullError::NotPositive`] for a spacing that is not above zero,
+    /// [`CullError::TooManyTriangles`]. A `step` of 0 is one of 1, and fewer than two rows or
+    /// columns have no triangles. `options.deformable` is not looked at.
     pub fn from_heights(
         heights: &[f32],
         columns: usize,
@@ -54,14 +54,17 @@ impl OccluderMesh {
                 found: heights.len(),
             });
         }
-        let extent = |count: usize, spacing: f32| count as f32 * spacing;
-        if !spacing_m.iter().all(|s| *s > 0.0)
-            || !extent(columns, spacing_m[0]).is_finite()
-            || !extent(rows, spacing_m[1]).is_finite()
-        {
+        if !spacing_m.iter().all(|s| s.is_finite()) {
             return Err(CullError::NotFinite(Quantity::Spacing));
         }
-        if heights.iter().any(|h| h.is_infinite()) {
+        if !spacing_m.iter().all(|s| *s > 0.0) {
+            return Err(CullError::NotPositive(Quantity::Spacing));
+        }
+        let is_extent = |count: usize, spacing: f32| (count as f32 * spacing).is_finite();
+        if !is_extent(columns, spacing_m[0])
+            || !is_extent(rows, spacing_m[1])
+            || heights.iter().any(|h| h.is_infinite())
+        {
             return Err(CullError::NotFinite(Quantity::Position));
         }
         // Nothing bounds the one where the other is 0.
@@ -368,14 +371,20 @@ mod tests {
         let mismatch = |expected, found| Err(CullError::LengthMismatch { expected, found });
         assert_eq!(bake(&flat, 5, [1.0, 1.0], 1), mismatch(15, 12));
         assert_eq!(bake(&flat, 0, [1.0, 1.0], 1), mismatch(0, 12));
-        let spacing = Err(CullError::NotFinite(Quantity::Spacing));
-        for bad in [0.0, -1.0, f32::NAN, f32::INFINITY, 3e38] {
-            assert_eq!(bake(&flat, 4, [bad, 1.0], 1), spacing);
-            assert_eq!(bake(&flat, 4, [1.0, bad], 1), spacing);
+        let position = CullError::NotFinite(Quantity::Position);
+        for (bad, error) in [
+            (0.0, CullError::NotPositive(Quantity::Spacing)),
+            (-1.0, CullError::NotPositive(Quantity::Spacing)),
+            (f32::NAN, CullError::NotFinite(Quantity::Spacing)),
+            (f32::NEG_INFINITY, CullError::NotFinite(Quantity::Spacing)),
+            // The last column or row would lie beyond what `f32` holds.
+            (3e38, position),
+        ] {
+            assert_eq!(bake(&flat, 4, [bad, 1.0], 1), Err(error));
+            assert_eq!(bake(&flat, 4, [1.0, bad], 1), Err(error));
         }
         let infinite = [0.0, 1.0, f32::NEG_INFINITY, 0.0];
-        let position = Err(CullError::NotFinite(Quantity::Position));
-        assert_eq!(bake(&infinite, 2, [1.0, 1.0], 1), position);
+        assert_eq!(bake(&infinite, 2, [1.0, 1.0], 1), Err(position));
     }
 
     #[test]
