@@ -10,7 +10,7 @@ use crate::place;
 use crate::status::{Fault, FovealCullStatus, guard};
 use crate::tree::FovealCullTree;
 use crate::view::{self, FovealCullView};
-use foveal_cull::{Aabb, Budget, Culler, Visibility};
+use foveal_cull::{Aabb, Budget, CullError, Culler, Visibility};
 use std::sync::RwLock;
 
 /// A culler with its occlusion buffer.
@@ -160,17 +160,6 @@ pub unsafe extern "C" fn foveal_culler_rasterize(
     })
 }
 
-/// Compares the length of a list for results before anything is written to it.
-fn same_length(expected: usize, found: usize) -> Result<(), Fault> {
-    if expected != found {
-        return Err(Fault::new(
-            FovealCullStatus::WrongLength,
-            format!("results have {found} elements, {expected} are needed"),
-        ));
-    }
-    Ok(())
-}
-
 /// Classifies boxes against the last frame.
 ///
 /// # Safety
@@ -225,7 +214,8 @@ pub unsafe extern "C" fn foveal_culler_test_tree(
         border::check_list(results, count, "results")?;
         let tree = border::read(&tree.0)?;
         let culler = border::read(&culler.0)?;
-        same_length(tree.len(), count)?;
+        // Before anything is written.
+        CullError::check_length(tree.len(), count)?;
         // SAFETY: the caller's word; zero is `Visibility::Visible`.
         let results =
             unsafe { border::zeroed_list(results.cast::<Visibility>(), count, "results") }?;
@@ -255,7 +245,8 @@ pub unsafe extern "C" fn foveal_culler_test_occludees(
         border::check_list(results, count, "results")?;
         let set = border::read(&occludees.set)?;
         let culler = border::read(&culler.0)?;
-        same_length(set.result_count(), count)?;
+        // Before anything is written.
+        CullError::check_length(set.result_count(), count)?;
         // SAFETY: the caller's word; zero is `Visibility::Visible`.
         let results =
             unsafe { border::zeroed_list(results.cast::<Visibility>(), count, "results") }?;
@@ -280,7 +271,8 @@ pub unsafe extern "C" fn foveal_culler_read_depth(
             border::check_list(pixels, count, "pixels")?;
             let culler = border::read(&culler.0)?;
             let (width, height) = culler.size();
-            same_length(width as usize * height as usize, count)?;
+            // Before anything is written.
+            CullError::check_length(width as usize * height as usize, count)?;
             let pixels = border::zeroed_list(pixels, count, "pixels")?;
             Ok(culler.read_depth(pixels)?)
         }

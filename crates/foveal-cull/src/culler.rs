@@ -353,13 +353,7 @@ impl Culler {
     /// [`CullError::LengthMismatch`] if `pixels` is not `width * height` long.
     pub fn read_depth(&self, pixels: &mut [f32]) -> Result<(), CullError> {
         let (w, h) = self.size();
-        let expected = (w * h) as usize;
-        if pixels.len() != expected {
-            return Err(CullError::LengthMismatch {
-                expected,
-                found: pixels.len(),
-            });
-        }
+        CullError::check_length((w * h) as usize, pixels.len())?;
         for (y, row) in (0..h).zip(pixels.chunks_exact_mut(w as usize)) {
             for (x, pixel) in (0..w).zip(row) {
                 *pixel = decode(self.buffer.code_of_pixel(x, y));

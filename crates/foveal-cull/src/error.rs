@@ -55,7 +55,7 @@ pub enum CullError {
         /// Number of positions.
         positions: usize,
     },
-    /// Two slices that belong together differ in length.
+    /// Two lists that belong together differ in length.
     #[non_exhaustive]
     LengthMismatch {
         /// Length that was needed.
@@ -157,6 +157,20 @@ pub enum ViewError {
     Oblique,
 }
 
+impl CullError {
+    /// Checks that a list has the length that another one, or an object, asks for.
+    ///
+    /// # Errors
+    /// [`CullError::LengthMismatch`] if `found` is not `expected`.
+    pub const fn check_length(expected: usize, found: usize) -> Result<(), Self> {
+        if found == expected {
+            Ok(())
+        } else {
+            Err(Self::LengthMismatch { expected, found })
+        }
+    }
+}
+
 impl fmt::Display for CullError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
@@ -189,7 +203,7 @@ impl fmt::Display for CullError {
                 write!(f, "index {index} is past the end of {positions} positions")
             }
             Self::LengthMismatch { expected, found } => {
-                write!(f, "a slice has length {found} where {expected} is needed")
+                write!(f, "a list has length {found} where {expected} is needed")
             }
             Self::UnknownOccluder => f.write_str("the set has no occluder with this id"),
             Self::UnknownOccludee => f.write_str("the set has no occludee with this id"),

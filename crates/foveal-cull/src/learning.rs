@@ -40,12 +40,7 @@ impl OccluderUsefulness {
         origin: impl Into<[f64; 3]>,
         results: &[Visibility],
     ) -> Result<(), CullError> {
-        if results.len() != boxes.len() {
-            return Err(CullError::LengthMismatch {
-                expected: boxes.len(),
-                found: results.len(),
-            });
-        }
+        CullError::check_length(boxes.len(), results.len())?;
         if let Some(query) = culler.prepared(DVec3::from(origin.into())) {
             culler.instruction_set().run(LayOver {
                 query: &query,

@@ -209,7 +209,7 @@ fn positions_that_do_not_fit_are_errors_and_change_nothing() {
     let mut mesh = OccluderMesh::bake(&wall, &[0, 1, 2], deformable()).unwrap();
     let bytes = mesh.to_bytes();
     let short = mesh.set_positions(&wall[..3]).unwrap_err().to_string();
-    assert_eq!(short, "a slice has length 3 where 4 is needed");
+    assert_eq!(short, "a list has length 3 where 4 is needed");
     let mut bad = wall;
     bad[1][1] = f32::NAN;
     let not_finite = Err(CullError::NotFinite(Quantity::Position));

@@ -37,12 +37,7 @@ impl Culler {
         origin: DVec3,
         results: &mut [Visibility],
     ) -> Result<(), CullError> {
-        if results.len() != boxes.len() {
-            return Err(CullError::LengthMismatch {
-                expected: boxes.len(),
-                found: results.len(),
-            });
-        }
+        CullError::check_length(boxes.len(), results.len())?;
         let Some(frame) = self.view else {
             results.fill(Visibility::Visible);
             return Ok(());
@@ -72,12 +67,7 @@ impl Culler {
         tree: &OccludeeTree,
         results: &mut [Visibility],
     ) -> Result<(), CullError> {
-        if results.len() != tree.len() {
-            return Err(CullError::LengthMismatch {
-                expected: tree.len(),
-                found: results.len(),
-            });
-        }
+        CullError::check_length(tree.len(), results.len())?;
         let Some(frame) = self.view else {
             results.fill(Visibility::Visible);
             return Ok(());
@@ -105,12 +95,7 @@ impl Culler {
         set: &OccludeeSet,
         results: &mut [Visibility],
     ) -> Result<(), CullError> {
-        if results.len() != set.result_count() {
-            return Err(CullError::LengthMismatch {
-                expected: set.result_count(),
-                found: results.len(),
-            });
-        }
+        CullError::check_length(set.result_count(), results.len())?;
         let (Some(frame), Some(tree)) = (self.view, set.tree()) else {
             return self.query_from(set.boxes(), set.origin(), results);
         };

@@ -55,12 +55,7 @@ impl OccluderMesh {
         positions: &[P],
     ) -> Result<(), CullError> {
         let expected = self.positions.ok_or(CullError::NotDeformable)?;
-        if positions.len() != expected {
-            return Err(CullError::LengthMismatch {
-                expected,
-                found: positions.len(),
-            });
-        }
+        CullError::check_length(expected, positions.len())?;
         // One-rings have no others.
         let finite = |&i: &u32| Vec3::from(positions[i as usize].into()).is_finite();
         if self.vertices.sources.iter().all(finite) {

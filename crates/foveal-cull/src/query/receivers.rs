@@ -162,7 +162,7 @@ impl ReceiverMask {
         origin: impl Into<[f64; 3]>,
         results: &[Visibility],
     ) -> Result<(), CullError> {
-        same_length(boxes, results)?;
+        CullError::check_length(boxes.len(), results.len())?;
         let from = DVec3::from(origin.into()) - self.camera.eye;
         for (bounds, _) in boxes.iter().zip(results).filter(|(_, r)| r.is_visible()) {
             let Some(seen) = self.footprint(bounds, from, self.reach_m) else {
@@ -203,7 +203,7 @@ impl ReceiverMask {
         origin: impl Into<[f64; 3]>,
         results: &mut [Visibility],
     ) -> Result<(), CullError> {
-        same_length(boxes, results)?;
+        CullError::check_length(boxes.len(), results.len())?;
         let from = DVec3::from(origin.into()) - self.camera.eye;
         for (bounds, result) in boxes.iter().zip(results) {
             if !result.is_visible() {
@@ -350,14 +350,4 @@ fn camera_of(light: &View, shadow_map_px: u32) -> Result<Camera, CullError> {
     }
     let side = f64::from(shadow_map_px);
     Camera::new(&View::mono(light.eye), side, side)
-}
-
-fn same_length(boxes: &[Aabb], results: &[Visibility]) -> Result<(), CullError> {
-    if boxes.len() == results.len() {
-        return Ok(());
-    }
-    Err(CullError::LengthMismatch {
-        expected: boxes.len(),
-        found: results.len(),
-    })
 }

@@ -190,12 +190,7 @@ impl OccludeeTree {
     /// # Errors
     /// [`CullError::LengthMismatch`] if there are not as many boxes as occludees.
     pub fn refit(&mut self, boxes: &[Aabb]) -> Result<(), CullError> {
-        if boxes.len() != self.len {
-            return Err(CullError::LengthMismatch {
-                expected: self.len,
-                found: boxes.len(),
-            });
-        }
+        CullError::check_length(self.len, boxes.len())?;
         self.refit_all(boxes);
         Ok(())
     }
