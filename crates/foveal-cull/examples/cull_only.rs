@@ -43,7 +43,7 @@ fn main() -> Result<(), CullError> {
     culler.rasterize(&view, &occluders, &FrameOptions::default(), &SingleThread)?;
     let mut results = vec![Visibility::Visible; things.len()];
     culler.query_tree(&tree, &mut results)?;
-    culler.count(&results, None);
+    culler.count(&results, None)?;
 
     let s = culler.stats();
     println!(

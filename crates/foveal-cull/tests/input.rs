@@ -279,6 +279,30 @@ fn an_up_that_is_the_view_direction_gives_a_pose() {
 }
 
 #[test]
+fn stats_of_a_set_need_a_result_and_a_triangle_count_for_each_place() {
+    let mut set = OccludeeSet::new(DVec3::ZERO);
+    let [first, _] = [0; 2].map(|_| set.insert(Aabb::new(Vec3::ZERO, Vec3::ONE)));
+    set.remove(first).unwrap();
+    let results = [Visibility::Visible; 3];
+    let mut culler = Culler::new(8, 8).unwrap();
+    for (results, triangles) in [
+        (&results[..1], None),
+        (&results[..], None),
+        (&results[..2], Some(&[10][..])),
+        (&results[..2], Some(&[10, 20, 30])),
+    ] {
+        let counted = culler.count_set(&set, results, triangles);
+        let is_length = matches!(counted, Err(CullError::LengthMismatch { expected: 2, .. }));
+        assert!(is_length, "{counted:?}");
+        assert_eq!(culler.stats(), CullStats::default());
+    }
+    let counted = culler.count_set(&set, &results[..2], Some(&[10, 20]));
+    assert_eq!(counted, Ok(()));
+    let stats = culler.stats();
+    assert_eq!((stats.occludees, stats.occludee_triangles), (1, 20));
+}
+
+#[test]
 fn size_thresholds_and_statistics_add_up() {
     let mut set = OccluderSet::new();
     let id = set.add(wall(), DAffine3::IDENTITY).unwrap();
@@ -300,7 +324,12 @@ fn size_thresholds_and_statistics_add_up() {
             Visibility::Small
         ]
     );
-    culler.count(&results, Some(&[10, 20, 30, 40]));
+    for triangles in [&[10, 20, 30][..], &[10, 20, 30, 40, 50]] {
+        let counted = culler.count(&results, Some(triangles));
+        let is_length = matches!(counted, Err(CullError::LengthMismatch { expected: 4, .. }));
+        assert!(is_length, "{counted:?}");
+    }
+    culler.count(&results, Some(&[10, 20, 30, 40])).unwrap();
     let s = culler.stats();
     assert_eq!(
         (s.occludees, s.occludees_visible, s.occludees_culled()),

@@ -345,7 +345,7 @@ fn places_of_removed_occludees_teach_nothing() {
         usefulness.observe_set(&culler, &objects, &results).unwrap();
         usefulness.learn(&culler, &set);
         // Stats have the objects that there are.
-        culler.count_set(&objects, &results, None);
+        culler.count_set(&objects, &results, None).unwrap();
         let stats = culler.stats();
         assert_eq!(
             (stats.occludees, stats.occludees_occluded),

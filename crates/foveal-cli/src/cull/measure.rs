@@ -104,7 +104,7 @@ pub(crate) fn measure(
             tree_ms.push(tree);
         }
     }
-    culler.count(&results, Some(triangles));
+    culler.count(&results, Some(triangles))?;
     let stats = culler.stats();
     let figures = Figures {
         occluders: OccluderFigures {

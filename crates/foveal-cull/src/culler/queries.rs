@@ -151,20 +151,33 @@ impl Culler {
 
     /// Adds results to the stats of the frame, with the triangles of each occludee if given. Every
     /// result counts; [`count_set`](Self::count_set) is for those of a set.
-    pub fn count(&mut self, results: &[Visibility], triangles: Option<&[u32]>) {
-        self.count_where(results, triangles, |_| true);
+    ///
+    /// # Errors
+    /// [`CullError::LengthMismatch`] if there are not as many triangle counts as results. Then
+    /// nothing is added.
+    pub fn count(
+        &mut self,
+        results: &[Visibility],
+        triangles: Option<&[u32]>,
+    ) -> Result<(), CullError> {
+        self.count_where(results, triangles, |_| true)
     }
 
     /// Adds the results of [`query_set`](Self::query_set) to the stats of the frame, with the
     /// triangles by [`OccludeeId::index`](crate::OccludeeId::index) if given. Places that no object
     /// has are left out.
+    ///
+    /// # Errors
+    /// [`CullError::LengthMismatch`] if `results` or `triangles` has not
+    /// [`OccludeeSet::result_count`] elements. Then nothing is added.
     pub fn count_set(
         &mut self,
         set: &OccludeeSet,
         results: &[Visibility],
         triangles: Option<&[u32]>,
-    ) {
-        self.count_where(results, triangles, |i| set.has_object(i));
+    ) -> Result<(), CullError> {
+        CullError::check_length(set.result_count(), results.len())?;
+        self.count_where(results, triangles, |i| set.has_object(i))
     }
 
     fn count_where(
@@ -172,7 +185,10 @@ impl Culler {
         results: &[Visibility],
         triangles: Option<&[u32]>,
         counts: impl Fn(usize) -> bool,
-    ) {
+    ) -> Result<(), CullError> {
+        if let Some(triangles) = triangles {
+            CullError::check_length(results.len(), triangles.len())?;
+        }
         let s = &mut self.stats;
         for (i, r) in results.iter().enumerate().filter(|(i, _)| counts(*i)) {
             s.occludees += 1;
@@ -182,15 +198,13 @@ impl Culler {
                 Visibility::Small => s.occludees_small += 1,
                 Visibility::Occluded => s.occludees_occluded += 1,
             }
-            let t = triangles
-                .and_then(|t| t.get(i))
-                .copied()
-                .map_or(0, u64::from);
+            let t = triangles.map_or(0, |t| u64::from(t[i]));
             s.occludee_triangles += t;
             if r.is_visible() {
                 s.occludee_triangles_visible += t;
             }
         }
+        Ok(())
     }
 
     /// The frame, prepared for boxes relative to an origin; none before the first one.

@@ -152,7 +152,7 @@ impl CullingStage {
     pub(crate) fn keep(&mut self, found: &Self, scene: &CullingScene) {
         self.results.clone_from(&found.results);
         self.cells.clone_from(&found.cells);
-        self.culler.count(&self.results, Some(&scene.triangles));
+        self.count(scene);
     }
 
     /// Wakes the threads that will soon have to rasterize.
@@ -227,13 +227,22 @@ impl CullingStage {
             }
         }
         self.found_for = Some(wanted);
-        self.culler.count(&self.results, Some(&scene.triangles));
+        self.count(scene);
         // Occluders are the first eye's: the other one's are about as many.
         let rasterized = self.culler.stats().occluder_triangles_rasterized;
         let is_shown = |object| scene.is_shown(object);
         let hidden = hidden_triangles(&self.results, &scene.triangles, is_shown);
         self.occlusion.advance(hidden, rasterized);
         self.object_stats()
+    }
+
+    /// Adds the results to the stats of the culler's frame, where there are any: there are none
+    /// before the first frame of a scene.
+    fn count(&mut self, scene: &CullingScene) {
+        if !self.results.is_empty() {
+            let counted = self.culler.count(&self.results, Some(&scene.triangles));
+            debug_assert_eq!(counted, Ok(()));
+        }
     }
 
     /// Adds what is seen in a view to the results: all of it if the view makes no sense, which is
