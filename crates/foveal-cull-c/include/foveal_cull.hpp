@@ -278,7 +278,8 @@ class Rebuild {
 public:
     /// Builds the hierarchy.
     void build() { expect_ok(foveal_cull_rebuild_build(rebuild_.get())); }
-    /// Whether it can be adopted. May be asked while another thread builds it. Building that failed is an error.
+    /// Whether it is built, adopted or not. May be asked while another thread builds it. Building that failed
+    /// is an error.
     bool built() const {
         std::uint32_t built = 0;
         expect_ok(foveal_cull_rebuild_is_built(rebuild_.get(), &built));

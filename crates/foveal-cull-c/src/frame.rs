@@ -102,19 +102,23 @@ impl FovealCullFrameOptions {
         }
         // SAFETY: the caller's word.
         let options = unsafe { border::sized(pointer, FIRST_OPTIONS, Self::new(), "options") }?;
-        if options.occlusion > 1 || options.reserved != 0 {
-            return Err(Fault::argument("'occlusion' or 'reserved' of the options"));
+        if options.occlusion > 1 {
+            return Err(Fault::argument("'occlusion' is neither 0 nor 1"));
         }
-        let thresholds = [
-            options.occluder_size_threshold,
-            options.occluder_pixels_per_quad,
-            options.occludee_size_threshold,
-        ];
-        if !thresholds.iter().all(|t| t.is_finite() && *t >= 0.0) {
-            return Err(Fault::new(
-                FovealCullStatus::NotFinite,
-                "a threshold of the options must be finite and not negative",
-            ));
+        if options.reserved != 0 {
+            return Err(Fault::argument("'reserved' of the options is not 0"));
+        }
+        for (threshold, name) in [
+            (options.occluder_size_threshold, "occluder_size_threshold"),
+            (options.occluder_pixels_per_quad, "occluder_pixels_per_quad"),
+            (options.occludee_size_threshold, "occludee_size_threshold"),
+        ] {
+            if !(threshold.is_finite() && threshold >= 0.0) {
+                return Err(Fault::new(
+                    FovealCullStatus::NotFinite,
+                    format!("'{name}' is {threshold}, but must be finite and not negative"),
+                ));
+            }
         }
         Ok(options)
     }

@@ -22,8 +22,8 @@ pub enum FovealCullStatus {
     BadArgument = 3,
     /// A number is not finite, or out of its range: negative, or zero where it must be above zero.
     NotFinite = 4,
-    /// A buffer side of 0 pixels or of more than 4,096, or a shadow map's of 0 texels or of more than
-    /// 16,384.
+    /// A buffer side of 0 pixels or of more than 4,096, or a picture's or a shadow map's of 0 or of
+    /// more than 16,384.
     BadSize = 5,
     /// A view cannot be culled for.
     BadView = 6,
@@ -76,7 +76,7 @@ impl FovealCullStatus {
             Self::BadArgument => c"an argument is not allowed",
             Self::NotFinite => c"a number is not finite, or out of its range",
             Self::BadSize => {
-                c"a buffer's side must be 1 to 4096 pixels, a shadow map's 1 to 16384 texels"
+                c"a buffer's side must be 1 to 4096 pixels, a picture's or shadow map's 1 to 16384"
             }
             Self::BadView => c"the view cannot be culled for",
             Self::BadIndices => c"the indices are not triangles over the positions",

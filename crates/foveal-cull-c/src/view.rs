@@ -119,8 +119,11 @@ impl FovealCullEye {
             far_m,
             ..
         } = self;
-        let projection = match (self.orthographic, self.reserved) {
-            (0, 0) => Projection::Perspective {
+        if self.reserved != 0 {
+            return Err(Fault::argument("'reserved' of an eye is not 0"));
+        }
+        let projection = match self.orthographic {
+            0 => Projection::Perspective {
                 left,
                 right,
                 bottom,
@@ -128,7 +131,7 @@ impl FovealCullEye {
                 near_m,
                 far_m,
             },
-            (1, 0) => Projection::Orthographic {
+            1 => Projection::Orthographic {
                 left,
                 right,
                 bottom,
@@ -136,7 +139,7 @@ impl FovealCullEye {
                 near_m,
                 far_m,
             },
-            _ => return Err(Fault::argument("'orthographic' or 'reserved' of an eye")),
+            _ => return Err(Fault::argument("'orthographic' is neither 0 nor 1")),
         };
         let m = &self.world_from_eye;
         let pose: [[f64; 3]; 4] = core::array::from_fn(|c| core::array::from_fn(|r| m[3 * c + r]));

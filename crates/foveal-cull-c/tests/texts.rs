@@ -78,7 +78,7 @@ fn finite_numbers_out_of_their_range_have_a_code_and_a_text_that_say_so() {
     );
     refused(
         objects.rasterize(view(), |o| o.occludee_size_threshold = -1.0),
-        "not negative",
+        "'occludee_size_threshold' is -1, but must be finite and not negative",
     );
     // SAFETY: a live mask; nine heights and a place for the mesh.
     unsafe {
@@ -95,4 +95,33 @@ fn finite_numbers_out_of_their_range_have_a_code_and_a_text_that_say_so() {
     // SAFETY: texts are constants.
     let text = unsafe { CStr::from_ptr(foveal_cull_status_text(Status::NotFinite as i32)) };
     assert!(text.to_str().unwrap().contains("out of its range"));
+}
+
+#[test]
+fn switches_that_are_refused_are_named_with_what_is_wanted() {
+    let objects = Objects::new();
+    let eye = |change: fn(&mut FovealCullEye)| {
+        let mut view = view();
+        change(&mut view.eyes[0]);
+        view
+    };
+    let refused = |status: Status, text: &str| {
+        assert_eq!((status, last_error().as_str()), (Status::BadArgument, text));
+    };
+    refused(
+        objects.rasterize(view(), |o| o.occlusion = 2),
+        "'occlusion' is neither 0 nor 1",
+    );
+    refused(
+        objects.rasterize(view(), |o| o.reserved = 1),
+        "'reserved' of the options is not 0",
+    );
+    refused(
+        objects.rasterize(eye(|e| e.orthographic = 2), |_| {}),
+        "'orthographic' is neither 0 nor 1",
+    );
+    refused(
+        objects.rasterize(eye(|e| e.reserved = 1), |_| {}),
+        "'reserved' of an eye is not 0",
+    );
 }
