@@ -212,17 +212,25 @@ typedef struct FovealCullView {
     double validity_radius_m;
 } FovealCullView;
 
-/* Thresholds and switches of one frame. */
+/* Thresholds and switches of one frame. Thresholds are finite and not negative. */
 typedef struct FovealCullFrameOptions {
     /* sizeof(FovealCullFrameOptions). */
     uint32_t size;
     /* 1: occluders are drawn. 0: frustum and size only. */
     uint32_t occlusion;
-    /* Occluders with radius^2 < distance * threshold^2 * tan(fov_y / 2) are left out. 0 takes all. */
+    /* Size threshold for occluders, in square roots of a metre: what it leaves out depends on the scene's
+     * scale. Occluders with radius^2 < distance * threshold^2 * tan(fov_y / 2) are left out, where the radius
+     * is that of the bounding sphere and the distance, along the view direction, is above 1 m. Orthographic
+     * views leave out none. 0 (the default) takes all. */
     float occluder_size_threshold;
-    /* Least screen area of a cluster, pixels per quad: 6 unless set. 0 takes all. */
+    /* Least screen area of a cluster (up to 64 quads of an occluder), pixels of the buffer per quad; 6 by
+     * default, 0 takes all. The area is that of the cluster's screen rectangle, times the part of it that the
+     * cluster's triangles can fill. Fine detail costs much and hides little. With two eyes or a validity
+     * radius, clusters that would lose most of their area to silhouette margins are left out whatever this
+     * says. */
     float occluder_pixels_per_quad;
-    /* The same threshold for boxes (FOVEAL_CULL_SMALL). 0 culls none by size. */
+    /* Size threshold for boxes (FOVEAL_CULL_SMALL), as the one for occluders. 0 (the default) culls none by
+     * size. */
     float occludee_size_threshold;
     /* 0. */
     uint32_t reserved;
@@ -231,7 +239,7 @@ typedef struct FovealCullFrameOptions {
     uint64_t (*clock)(void *user);
     /* Passed to `clock`. */
     void *clock_user;
-    /* Clock reading at or after which no further cluster is begun. */
+    /* Clock reading at or after which no further cluster is begun, nanoseconds. */
     uint64_t deadline_ns;
     /* What occluders were worth in the frames before: those that hid nothing are left out, and with a time limit
      * those are drawn that hide most for their time. Null to draw all, nearest first. */

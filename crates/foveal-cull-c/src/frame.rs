@@ -16,11 +16,11 @@ pub struct FovealCullFrameOptions {
     pub size: u32,
     /// 1: occluders are drawn. 0: frustum and size only.
     pub occlusion: u32,
-    /// Size threshold for occluders, 0 takes all.
+    /// Size threshold for occluders, square roots of a metre; 0 takes all.
     pub occluder_size_threshold: f32,
-    /// Least screen area of a cluster, pixels per quad, 0 takes all.
+    /// Least screen area of a cluster, pixels of the buffer per quad; 0 takes all.
     pub occluder_pixels_per_quad: f32,
-    /// Size threshold for occludees, 0 culls none by size.
+    /// Size threshold for occludees, square roots of a metre; 0 culls none by size.
     pub occludee_size_threshold: f32,
     /// 0.
     pub reserved: u32,
@@ -28,7 +28,7 @@ pub struct FovealCullFrameOptions {
     pub clock: Option<extern "C" fn(user: *mut c_void) -> u64>,
     /// Passed to `clock`.
     pub clock_user: *mut c_void,
-    /// Clock reading at or after which no further cluster is begun.
+    /// Clock reading at or after which no further cluster is begun, nanoseconds.
     pub deadline_ns: u64,
     /// What occluders were worth in the frames before; null to draw all.
     pub usefulness: *const FovealCullUsefulness,

@@ -47,13 +47,14 @@ pub struct FrameOptions<'a> {
     /// Size threshold for occluders, in square roots of a metre, as in Intel's sample (1.5 there):
     /// what it leaves out depends on the scene's scale. Occluders with
     /// `radius² < distance * threshold² * tan(fov_y / 2)` are left out, where the radius is that of
-    /// the bounding sphere and the distance is above 1 m. 0 (the default) takes all.
+    /// the bounding sphere and the distance, along the view direction, is above 1 m. Orthographic
+    /// views leave out none. 0 (the default) takes all.
     pub occluder_size_threshold: f32,
-    /// Least screen area of a cluster (up to 64 quads), pixels per quad; 6 by default, 0 takes all.
-    /// The area is that of the cluster's screen rectangle, times the part of it that the cluster's
-    /// triangles can fill. Fine detail costs much and hides little. With two eyes or a validity
-    /// radius, clusters that would lose most of their area to silhouette margins are left out
-    /// whatever this says.
+    /// Least screen area of a cluster (up to 64 quads), pixels of the buffer per quad; 6 by
+    /// default, 0 takes all. The area is that of the cluster's screen rectangle, times the part of
+    /// it that the cluster's triangles can fill. Fine detail costs much and hides little. With two
+    /// eyes or a validity radius, clusters that would lose most of their area to silhouette margins
+    /// are left out whatever this says.
     pub occluder_pixels_per_quad: f32,
     /// Size threshold for occludees ([`Visibility::Small`](crate::Visibility::Small)), as the one
     /// for occluders (0.01 in Intel's sample). 0 (the default) culls none by size.

@@ -279,6 +279,32 @@ fn an_up_that_is_the_view_direction_gives_a_pose() {
 }
 
 #[test]
+fn size_thresholds_are_for_what_lies_farther_than_a_metre_in_a_perspective() {
+    let mut set = OccluderSet::new();
+    set.add(wall(), DAffine3::IDENTITY).unwrap();
+    let options = FrameOptions::default()
+        .with_occluder_size_threshold(1e3)
+        .with_occludee_size_threshold(1e3);
+    let boxes = [-0.9, -3.0].map(|z| Aabb::new([-0.01, -0.01, z], [0.01, 0.01, z + 0.01]));
+    let lens = Projection::orthographic(4.0, 1.0, 0.1, 9.0);
+    let flat = View::mono(Eye::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, lens));
+    let (seen, small) = (Visibility::Visible, Visibility::Small);
+    for (view, drawn, expected) in [(view(), 0, [seen, small]), (flat, 1, [seen; 2])] {
+        let mut culler = Culler::new(64, 64).unwrap();
+        culler
+            .rasterize(&view, &set, &options, &SingleThread)
+            .unwrap();
+        let mut results = [Visibility::Occluded; 2];
+        culler.query(&boxes, DVec3::ZERO, &mut results).unwrap();
+        let stats = culler.stats();
+        assert_eq!(
+            (stats.occluder_models_rasterized, results),
+            (drawn, expected)
+        );
+    }
+}
+
+#[test]
 fn stats_of_a_set_need_a_result_and_a_triangle_count_for_each_place() {
     let mut set = OccludeeSet::new(DVec3::ZERO);
     let [first, _] = [0; 2].map(|_| set.insert(Aabb::new(Vec3::ZERO, Vec3::ONE)));
