@@ -81,7 +81,9 @@ int main() try {
     const std::uint16_t indices[] = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
     cull::Occluders occluders;
     // Baked once: a game keeps the bytes in a file, and reads that when the level loads.
-    const std::vector<std::uint8_t> file = cull::Mesh(wall, 8, 3 * sizeof(float), indices, 12).to_bytes();
+    cull::MeshOptions both_sides;
+    both_sides.two_sided = true;
+    const auto file = cull::Mesh(wall, 8, 3 * sizeof(float), indices, 12, both_sides).to_bytes();
     occluders.add(cull::Mesh::from_bytes(file));
     const cull::Mesh leaf = cull::Mesh::box({{-1.1f, -3, -0.1f}, {1.1f, 4, 0.1f}});
     const auto at = [](double x) { return cull::Affine{1, 0, 0, 0, 1, 0, 0, 0, 1, x, 0, -5}; };

@@ -144,14 +144,25 @@ template <class T, void (*destroy)(T *)> struct Destroy {
 template <class T, void (*destroy)(T *)> using Handle = std::unique_ptr<T, Destroy<T, destroy>>;
 } // namespace detail
 
+/// How a mesh is baked. FovealCullMeshSource says more about each.
+struct MeshOptions {
+    /// Triangles occlude from behind too.
+    bool two_sided = false;
+    /// What results for two eyes or a radius need is baked.
+    bool adjacency = true;
+    /// Occluders of the mesh can be given other positions.
+    bool deformable = false;
+    /// Boxes inside a closed mesh take its place where they are the better occluder.
+    bool inner_shape = false;
+};
+
 /// A baked mesh.
 class Mesh {
 public:
     /// Bakes triangles: three floats per position, `stride` bytes apart.
     template <class Index>
     Mesh(const float *positions, std::size_t position_count, std::size_t stride, const Index *indices,
-         std::size_t index_count, bool two_sided = false, bool adjacency = true,
-         bool deformable = false, bool inner_shape = false) {
+         std::size_t index_count, const MeshOptions &options = {}) {
         static_assert(sizeof(Index) == 2 || sizeof(Index) == 4, "indices have 16 or 32 bits");
         FovealCullMeshSource source{};
         expect_ok(foveal_cull_mesh_source_init(&source));
@@ -161,10 +172,10 @@ public:
         source.indices = indices;
         source.index_count = index_count;
         source.index_bytes = sizeof(Index);
-        source.two_sided = two_sided ? 1 : 0;
-        source.adjacency = adjacency ? 1 : 0;
-        source.deformable = deformable ? 1 : 0;
-        source.inner_shape = inner_shape ? 1 : 0;
+        source.two_sided = options.two_sided ? 1 : 0;
+        source.adjacency = options.adjacency ? 1 : 0;
+        source.deformable = options.deformable ? 1 : 0;
+        source.inner_shape = options.inner_shape ? 1 : 0;
         FovealCullMesh *mesh = nullptr;
         expect_ok(foveal_cull_mesh_bake(&source, &mesh));
         mesh_.reset(mesh);

@@ -8,7 +8,7 @@ use common::{Language, compiler, crate_dir, done, library_dir, program, scratch}
 use std::path::Path;
 use std::process::Command;
 
-const EXAMPLES: [(&str, Language); 8] = [
+const EXAMPLES: [(&str, Language); 9] = [
     ("examples/street.c", Language::C),
     ("examples/jobs.cpp", Language::Cpp),
     ("tests/moc_shim.cpp", Language::Cpp),
@@ -17,6 +17,7 @@ const EXAMPLES: [(&str, Language); 8] = [
     ("examples/shadows.c", Language::C),
     ("tests/receivers.cpp", Language::Cpp),
     ("tests/usefulness.cpp", Language::Cpp),
+    ("tests/mesh_options.cpp", Language::Cpp),
 ];
 
 fn run(program: &Path) -> String {
