@@ -348,6 +348,9 @@ mod raster;
 pub mod reference;
 mod simd;
 mod stats;
+#[cfg(feature = "testing")]
+#[doc(hidden)]
+pub mod testing;
 mod threads;
 mod transform;
 mod view;

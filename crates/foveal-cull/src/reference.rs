@@ -16,17 +16,6 @@ use crate::transform::Affine;
 use crate::view::{Eye, View};
 use glam::{DVec3, DVec4, Vec3};
 
-/// Gives changed bytes of a baked mesh the length and the checksum that fit them, so that a test
-/// reaches what is behind these checks. Shorter bytes than a header stay as they are.
-#[cfg(feature = "reference")]
-pub fn seal_mesh_bytes(bytes: &mut [u8]) {
-    if bytes.len() >= crate::occluder::MESH_HEADER {
-        let length = (bytes.len() as u64).to_le_bytes();
-        bytes[16..24].copy_from_slice(&length);
-        crate::occluder::seal(bytes);
-    }
-}
-
 /// The reference's result for a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seen {

@@ -5,7 +5,7 @@ mod common;
 
 use common::{Random, answers, assert_as_a_list, eye, occluders, scene, wrongly_culled};
 use foveal_cull::{
-    Aabb, CullError, Culler, OccludeeId, OccludeeSet, SingleThread, View, Visibility,
+    Aabb, CullError, Culler, OccludeeId, OccludeeSet, SingleThread, View, Visibility, testing,
 };
 use glam::{DVec3, Vec3};
 
@@ -119,7 +119,7 @@ fn nothing_that_the_reference_sees_is_culled_after_moves_and_rebuilds() {
         let mut set = OccludeeSet::new(DVec3::ZERO);
         let mut ids: Vec<OccludeeId> = scene.boxes.iter().map(|b| set.insert(*b)).collect();
         set.rebuild();
-        set.prefer_tree();
+        testing::prefer_tree(&mut set);
         let mut culler = Culler::new(64, 48).unwrap();
         answers(
             &mut culler,

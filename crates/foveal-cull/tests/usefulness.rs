@@ -9,7 +9,7 @@ use core::sync::atomic::{AtomicU64, Ordering};
 use foveal_cull::{
     Aabb, Affine, Budget, CullError, CullStats, Culler, FrameOptions, InstructionSet, OccludeeSet,
     OccluderMesh, OccluderSet, OccluderUsefulness, SingleThread, Threads, View, Visibility,
-    WorkerThreads,
+    WorkerThreads, testing,
 };
 use glam::DVec3;
 use proptest::prelude::*;
@@ -328,7 +328,7 @@ fn places_of_removed_occludees_teach_nothing() {
         objects.remove(*id).unwrap();
     }
     objects.rebuild();
-    objects.prefer_tree();
+    testing::prefer_tree(&mut objects);
     let mut culler = Culler::new(320, 180).unwrap();
     let mut usefulness = OccluderUsefulness::new();
     let mut results = vec![Visibility::Visible; objects.result_count()];

@@ -32,7 +32,7 @@ mod weld;
 mod word_hash;
 
 pub use bake::BakeOptions;
-#[cfg(feature = "reference")]
+#[cfg(feature = "testing")]
 pub(crate) use bytes::{HEADER as MESH_HEADER, seal};
 pub use mesh::OccluderMesh;
 pub use set::{OccluderId, OccluderSet};

@@ -45,6 +45,7 @@ pub struct OccludeeSet {
     /// Objects in the tree.
     placed: usize,
     origin: DVec3,
+    /// Whether queries take the tree where a list is faster: for tests only.
     prefers_tree: bool,
 }
 
@@ -273,9 +274,8 @@ impl OccludeeSet {
         !self.prefers_tree && !tree_pays(open, self.bounds.len())
     }
 
-    /// For tests: from here on queries take the hierarchy wherever it fits, also where a list is faster.
-    #[doc(hidden)]
-    pub fn prefer_tree(&mut self) {
+    #[cfg(feature = "testing")]
+    pub(crate) fn prefer_tree(&mut self) {
         self.prefers_tree = true;
     }
 

@@ -11,7 +11,7 @@ pub mod promise;
 use foveal_cull::reference::{Reference, Seen};
 use foveal_cull::{
     Aabb, BakeOptions, Culler, Eye, FrameOptions, OccludeeId, OccludeeSet, OccluderMesh,
-    OccluderSet, Projection, Threads, View, Visibility,
+    OccluderSet, Projection, Threads, View, Visibility, testing,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 use std::sync::Arc;
@@ -332,7 +332,7 @@ pub fn wrongly_culled(
 /// not.
 pub fn assert_as_a_list(culler: &Culler, set: &OccludeeSet, ids: &[OccludeeId]) -> [usize; 2] {
     let mut by_tree = set.clone();
-    by_tree.prefer_tree();
+    testing::prefer_tree(&mut by_tree);
     of_set_and_list(culler, set, ids);
     of_set_and_list(culler, &by_tree, ids)
 }

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use foveal_cull::{
     BakeOptions, CullError, Culler, Eye, FrameOptions, InstructionSet, OccludeeSet, OccludeeTree,
-    OccluderMesh, OccluderSet, SingleThread, Threads, View, Visibility, WorkerThreads,
+    OccluderMesh, OccluderSet, SingleThread, Threads, View, Visibility, WorkerThreads, testing,
 };
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -93,7 +93,7 @@ fn agree(choices: &mut Choices<'_>) {
     let tree = OccludeeTree::build(&scene.boxes, scene.origin);
     let mut objects = OccludeeSet::new(scene.origin);
     // Few objects would be a list otherwise.
-    objects.prefer_tree();
+    testing::prefer_tree(&mut objects);
     for bounds in &scene.boxes {
         objects.insert(*bounds);
     }

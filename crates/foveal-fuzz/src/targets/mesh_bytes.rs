@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use foveal_cull::reference::seal_mesh_bytes;
+use foveal_cull::testing::seal_mesh_bytes;
 use foveal_cull::{
     Aabb, Affine, BakeOptions, Culler, FrameOptions, InstructionSet, OccluderMesh, OccluderSet,
     SingleThread, View,

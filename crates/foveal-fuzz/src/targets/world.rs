@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use foveal_cull::{
     Aabb, Affine, CullError, Culler, FrameOptions, OccludeeId, OccludeeSet, OccluderId,
-    OccluderMesh, OccluderSet, SingleThread, View,
+    OccluderMesh, OccluderSet, SingleThread, View, testing,
 };
 use glam::{DVec3, Vec3};
 
@@ -75,7 +75,7 @@ impl World {
         };
         let mut objects = OccludeeSet::new(DVec3::ZERO);
         // Few objects would be a list otherwise.
-        objects.prefer_tree();
+        testing::prefer_tree(&mut objects);
         Self {
             objects,
             ids: Vec::new(),
