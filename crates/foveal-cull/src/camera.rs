@@ -42,105 +42,34 @@ pub(crate) struct Camera {
 impl Camera {
     /// Checks a view and reduces it; `width` and `height` in samples.
     pub(crate) fn new(view: &View, width: f64, height: f64) -> Result<Self, CullError> {
-        view.eye.check()?;
-        if !view.validity_radius_m.is_finite() {
-            return Err(CullError::NotFinite(Quantity::ValidityRadius));
-        }
-        if view.validity_radius_m < 0.0 {
-            return Err(CullError::Negative(Quantity::ValidityRadius));
-        }
-        let (eye, to_eye) = match view.second_eye {
-            None => (view.eye, DVec3::ZERO),
-            Some(second) => {
-                second.check()?;
-                join_eyes(&view.eye, &second)?
-            }
-        };
-        let radius = to_eye.length() + view.validity_radius_m;
-        // Samples of the joined frustum are neither eye's own, so that results must hold between
-        // them.
-        let radius = match view.second_eye {
-            Some(second) if second != view.eye => {
-                radius.max(LEAST_RADIUS * eye.projection.near_far_m()[0])
-            }
-            _ => radius,
-        };
+        let (eye, to_eye) = center_of(view)?;
+        let radius = radius_of(view, &eye, to_eye);
         let (projection, clamp_depth) = if radius > 0.0 {
             widen(eye.projection, radius)
         } else {
             (eye.projection, f64::INFINITY)
         };
-        let [l, r, b, t] = projection.extents();
-        let [near, far] = projection.near_far_m();
-        let m = eye.pose().matrix3;
-        let (right, up, forward) = (m.x_axis, m.y_axis, -m.z_axis);
-        // Screen x in 0..width; perspective: ((x/d) - l) / (r - l) * width.
-        let (sx, sy) = (width / (r - l), height / (t - b));
-        let (rows, far_depth) = if projection.is_orthographic() {
-            let k = 1.0 / (far - near);
-            (
-                [
-                    (right * sx).extend(-l * sx),
-                    (-up * sy).extend(t * sy),
-                    (forward * -k).extend(far * k),
-                    DVec4::new(0.0, 0.0, 0.0, 1.0),
-                ],
-                0.0,
-            )
+        let orthographic = projection.is_orthographic();
+        let lens = Lens::new(&eye, &projection, [width, height]);
+        let lines = if orthographic {
+            lens.parallel_lines()
         } else {
-            (
-                [
-                    (right * sx - forward * (l * sx)).extend(0.0),
-                    (-up * sy + forward * (t * sy)).extend(0.0),
-                    DVec4::new(0.0, 0.0, 0.0, near),
-                    forward.extend(0.0),
-                ],
-                if far.is_finite() { near / far } else { 0.0 },
-            )
+            lens.lines_through_eye(to_eye, view.validity_radius_m)
         };
+        let [_, _, bottom, top] = lens.extents;
         Ok(Self {
             eye: eye.position().into(),
-            rows,
-            orthographic: projection.is_orthographic(),
-            forward,
-            far_depth,
+            rows: lines.rows,
+            orthographic,
+            forward: lens.forward,
+            far_depth: lines.far_depth,
             radius,
-            // Moving sideways by e shifts a point at tangent x and distance z by e / z against
-            // infinity, moving forward by e x / z; together at most e / z * sqrt(1 + x² + y²).
-            shift_per_metre: if projection.is_orthographic() {
-                0.0
-            } else {
-                let (x, y) = (l.abs().max(r.abs()), b.abs().max(t.abs()));
-                sx.max(sy) * (1.0 + x * x + y * y).sqrt() / near
-            },
-            shift: if projection.is_orthographic() {
-                [0.0; 2]
-            } else {
-                // The same along each axis: a step (sx, sy, sz) of the eye shifts a point at
-                // tangent x and distance z by (sx - x sz) / z.
-                let along = forward.dot(to_eye).abs();
-                let axis = |scale: f64, side: DVec3, reach: f64| {
-                    let step = side.dot(to_eye).abs() + reach * along;
-                    let around = view.validity_radius_m * (1.0 + reach * reach).sqrt();
-                    scale * (step + around) / near
-                };
-                [
-                    axis(sx, right, l.abs().max(r.abs())),
-                    axis(sy, up, b.abs().max(t.abs())),
-                ]
-            },
             clamp_depth,
-            tan_half_fov_y: (t - b) * 0.5,
-            near,
-            near_reach: {
-                let (x, y) = (l.abs().max(r.abs()), b.abs().max(t.abs()));
-                let corner = if projection.is_orthographic() {
-                    DVec3::new(x, y, near)
-                } else {
-                    DVec3::new(x, y, 1.0) * near
-                };
-                corner.length() + radius
-            },
+            shift_per_metre: lines.shift_per_metre,
+            shift: lines.shift,
+            tan_half_fov_y: (top - bottom) * 0.5,
+            near: lens.near,
+            near_reach: lines.near_corner.length() + radius,
         })
     }
 
@@ -173,6 +102,134 @@ impl Camera {
                 r.dot(origin) + row.w,
             ]
         })
+    }
+}
+
+/// A frustum with its axes in the world, and what is asked of it more than once.
+struct Lens {
+    right: DVec3,
+    up: DVec3,
+    forward: DVec3,
+    /// Left, right, bottom and top: tangents, or metres if orthographic.
+    extents: [f64; 4],
+    /// Largest of the extents along x and along y.
+    widest: [f64; 2],
+    /// Samples per unit of the extents along x and along y.
+    samples: [f64; 2],
+    near: f64,
+    far: f64,
+}
+
+/// What perspective and orthographic frusta have each in their own way; see [`Camera`].
+struct Lines {
+    rows: [DVec4; 4],
+    far_depth: f64,
+    shift_per_metre: f64,
+    shift: [f64; 2],
+    /// The corner of the near rectangle that is farthest from the eye, in the eye's axes, metres.
+    near_corner: DVec3,
+}
+
+impl Lens {
+    fn new(eye: &Eye, projection: &Projection, [width, height]: [f64; 2]) -> Self {
+        let extents = projection.extents();
+        let [l, r, b, t] = extents;
+        let [near, far] = projection.near_far_m();
+        let m = eye.pose().matrix3;
+        Self {
+            right: m.x_axis,
+            up: m.y_axis,
+            forward: -m.z_axis,
+            extents,
+            widest: widest(extents),
+            // Screen x in 0..width; perspective: ((x/d) - l) / (r - l) * width.
+            samples: [width / (r - l), height / (t - b)],
+            near,
+            far,
+        }
+    }
+
+    /// Of an orthographic frustum.
+    fn parallel_lines(&self) -> Lines {
+        let ([l, _, _, t], [sx, sy], [x, y]) = (self.extents, self.samples, self.widest);
+        let k = 1.0 / (self.far - self.near);
+        Lines {
+            rows: [
+                (self.right * sx).extend(-l * sx),
+                (-self.up * sy).extend(t * sy),
+                (self.forward * -k).extend(self.far * k),
+                DVec4::new(0.0, 0.0, 0.0, 1.0),
+            ],
+            far_depth: 0.0,
+            shift_per_metre: 0.0,
+            shift: [0.0; 2],
+            near_corner: DVec3::new(x, y, self.near),
+        }
+    }
+
+    /// Of a perspective frustum, whose eyes lie within `radius_m` of `to_eye` and of its opposite.
+    fn lines_through_eye(&self, to_eye: DVec3, radius_m: f64) -> Lines {
+        let ([l, _, _, t], [sx, sy], [x, y]) = (self.extents, self.samples, self.widest);
+        let (near, far) = (self.near, self.far);
+        // Moving sideways by e shifts a point at tangent x and distance z by e / z against
+        // infinity, moving forward by e x / z; together at most e / z * sqrt(1 + x² + y²).
+        let shift_per_metre = sx.max(sy) * (1.0 + x * x + y * y).sqrt() / near;
+        // The same along each axis: a step (sx, sy, sz) of the eye shifts a point at tangent x and
+        // distance z by (sx - x sz) / z.
+        let along = self.forward.dot(to_eye).abs();
+        let shift = |samples: f64, side: DVec3, reach: f64| {
+            let step = side.dot(to_eye).abs() + reach * along;
+            let around = radius_m * (1.0 + reach * reach).sqrt();
+            samples * (step + around) / near
+        };
+        Lines {
+            rows: [
+                (self.right * sx - self.forward * (l * sx)).extend(0.0),
+                (-self.up * sy + self.forward * (t * sy)).extend(0.0),
+                DVec4::new(0.0, 0.0, 0.0, near),
+                self.forward.extend(0.0),
+            ],
+            far_depth: if far.is_finite() { near / far } else { 0.0 },
+            shift_per_metre,
+            shift: [shift(sx, self.right, x), shift(sy, self.up, y)],
+            near_corner: DVec3::new(x, y, 1.0) * near,
+        }
+    }
+}
+
+/// Largest extent along x and along y.
+fn widest([left, right, bottom, top]: [f64; 4]) -> [f64; 2] {
+    [left.abs().max(right.abs()), bottom.abs().max(top.abs())]
+}
+
+/// The centre eye of a checked view, and the way from it to the second eye.
+fn center_of(view: &View) -> Result<(Eye, DVec3), CullError> {
+    view.eye.check()?;
+    if !view.validity_radius_m.is_finite() {
+        return Err(CullError::NotFinite(Quantity::ValidityRadius));
+    }
+    if view.validity_radius_m < 0.0 {
+        return Err(CullError::Negative(Quantity::ValidityRadius));
+    }
+    match view.second_eye {
+        None => Ok((view.eye, DVec3::ZERO)),
+        Some(second) => {
+            second.check()?;
+            join_eyes(&view.eye, &second)
+        }
+    }
+}
+
+/// The radius around the centre eye within which all eyes of a view may be.
+fn radius_of(view: &View, center: &Eye, to_eye: DVec3) -> f64 {
+    let radius = to_eye.length() + view.validity_radius_m;
+    match view.second_eye {
+        // Samples of the joined frustum are neither eye's own, so that results must hold between
+        // them.
+        Some(second) if second != view.eye => {
+            radius.max(LEAST_RADIUS * center.projection.near_far_m()[0])
+        }
+        _ => radius,
     }
 }
 
@@ -257,7 +314,7 @@ fn widen(projection: Projection, radius: f64) -> (Projection, f64) {
             near_m: near,
             far_m: far,
         } => {
-            let (x, y) = (left.abs().max(right.abs()), bottom.abs().max(top.abs()));
+            let [x, y] = widest([left, right, bottom, top]);
             let tilt = (1.0 + x * x + y * y).sqrt();
             let near = near + radius;
             let holds_from = radius * tilt / MARGIN + radius;
