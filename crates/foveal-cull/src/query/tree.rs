@@ -82,8 +82,34 @@ impl Node {
         (0..8).filter(move |lane| lanes >> lane & 1 != 0)
     }
 
+    #[inline(always)]
     pub(super) fn is_object(&self, lane: usize) -> bool {
         self.objects >> lane & 1 != 0
+    }
+
+    /// Centre and half extent of a box around the children's. NaN spreads upwards: a node with a
+    /// box that is invalid is never culled as a whole.
+    fn around_children(&self) -> (Vec3, Vec3) {
+        let child = |lane: u32| {
+            let of = |rows: [[f32; 8]; 3]| Vec3::from_array(rows.map(|v| v[lane as usize]));
+            (of(self.boxes.center), of(self.boxes.half))
+        };
+        // Bit by bit: refitting takes 0.8 of the time that it takes with `children`.
+        let mut rest = self.lanes;
+        if rest == 0 {
+            return (Vec3::NAN, Vec3::NAN);
+        }
+        let (mut center, mut half) = child(rest.trailing_zeros());
+        rest &= rest - 1;
+        while rest != 0 {
+            let (c, h) = child(rest.trailing_zeros());
+            rest &= rest - 1;
+            let (lo, hi) = ((center - half).min(c - h), (center + half).max(c + h));
+            let nan = (center + half + c + h) * 0.0;
+            center = (lo + hi) * 0.5 + nan;
+            half = (hi - lo) * 0.5 * (1.0 + 1e-6) + (lo.abs() + hi.abs()) * 1e-7 + nan;
+        }
+        (center, half)
     }
 
     /// Takes out an object.
@@ -132,7 +158,7 @@ impl OccludeeTree {
         while n < tree.nodes.len() {
             tree.nodes[n].below = tree.nodes.len() as u32;
             let node = tree.nodes[n];
-            for lane in (0..8).filter(|lane| (node.lanes & !node.objects) >> lane & 1 != 0) {
+            for lane in node.children().filter(|&lane| !node.is_object(lane)) {
                 let runs = eight_of(boxes, &mut order, node.run(lane));
                 tree.nodes.push(Node::over(&runs));
             }
@@ -199,34 +225,11 @@ impl OccludeeTree {
         // Children come after their parents.
         for n in (0..self.nodes.len()).rev() {
             let node = self.nodes[n];
-            for lane in (0..8).filter(|lane| node.lanes >> lane & 1 != 0) {
-                let (center, half) = if node.objects >> lane & 1 != 0 {
+            for lane in node.children() {
+                let (center, half) = if node.is_object(lane) {
                     grown(&boxes[self.order[node.run(lane).start] as usize])
                 } else {
-                    let below = &self.nodes[node.child(lane) as usize];
-                    (0..below.lanes.count_ones() as usize)
-                        .fold(None, |all: Option<(Vec3, Vec3)>, i| {
-                            let (c, h) = (
-                                Vec3::from_array(below.boxes.center.map(|v| v[i])),
-                                Vec3::from_array(below.boxes.half.map(|v| v[i])),
-                            );
-                            // NaN spreads upwards: a node with a box that is invalid is never
-                            // culled as a whole.
-                            Some(match all {
-                                None => (c, h),
-                                Some((ac, ah)) => {
-                                    let (lo, hi) = ((ac - ah).min(c - h), (ac + ah).max(c + h));
-                                    let nan = (ac + ah + c + h) * 0.0;
-                                    (
-                                        (lo + hi) * 0.5 + nan,
-                                        (hi - lo) * 0.5 * (1.0 + 1e-6)
-                                            + (lo.abs() + hi.abs()) * 1e-7
-                                            + nan,
-                                    )
-                                }
-                            })
-                        })
-                        .unwrap_or((Vec3::NAN, Vec3::NAN))
+                    self.nodes[node.child(lane) as usize].around_children()
                 };
                 self.nodes[n].boxes.set(lane, center, half);
             }

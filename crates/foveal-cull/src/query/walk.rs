@@ -303,7 +303,7 @@ impl<'a> Walk<'a> {
             let node = self.node(work.stack[work.top]);
             let p = project(l, &self.query.screen, &node.boxes);
             for lane in node.children() {
-                let object = node.objects >> lane & 1 != 0;
+                let object = node.is_object(lane);
                 let result = self.query.classify(l, &p, lane, &node.boxes, object);
                 if object || result != Visibility::Visible {
                     self.assign(node, lane, result);
