@@ -6,7 +6,7 @@ use crate::error::CullError;
 use crate::format::{BLOCK, SAMPLES};
 use crate::occluder::OccluderUsefulness;
 use crate::occluder::set::OccluderSet;
-use crate::occluder::usefulness::{Done, Observed};
+use crate::occluder::usefulness::{ObservedBoxes, Outcome};
 use crate::projection::boxes::Boxes8;
 use crate::projection::near::{Clipped, clip_box};
 use crate::projection::project::project;
@@ -22,7 +22,7 @@ use glam::DVec3;
 /// Hidden boxes that one call looks at, at most. The next frame goes on with the others.
 const MOST_BOXES: usize = 256;
 
-/// Calls within a frame that have a turn of their own.
+/// Calls within a frame that remember each by itself with which box the next frame begins.
 const MOST_CALLS: usize = 1024;
 
 impl OccluderUsefulness {
@@ -73,58 +73,59 @@ impl OccluderUsefulness {
     /// `occluders` is the set that was rasterized.
     pub fn learn(&mut self, culler: &Culler, occluders: &OccluderSet) {
         self.observed.calls = 0;
-        if !core::mem::take(&mut self.observed.any) {
+        if !core::mem::take(&mut self.observed.has_results) {
             return;
         }
         let blocks = self.observed.blocks;
         let Some(drawn) = culler.recorded().filter(|d| d.blocks == blocks) else {
-            self.observed.over.fill(0);
+            self.observed.box_counts.fill(0);
             return;
         };
-        self.next();
-        let mut all = core::mem::take(&mut self.done);
-        self.find_done(&drawn, occluders, &mut all);
-        let work = all.iter().flatten().map(|done| u64::from(done.work)).sum();
+        self.count_frame();
+        let mut outcomes = core::mem::take(&mut self.outcomes);
+        self.find_outcomes(&drawn, occluders, &mut outcomes);
+        let drawn_ones = outcomes.iter().flatten();
+        let work = drawn_ones.map(|outcome| u64::from(outcome.work)).sum();
         if drawn.ns > 0 {
-            self.timed(drawn.ns, work);
+            self.learn_unit_time(drawn.ns, work);
         }
-        for (candidate, done) in drawn.candidates.iter().zip(&all) {
+        for (candidate, outcome) in drawn.candidates.iter().zip(&outcomes) {
             let (slot, cluster) = candidate.place();
             let known = occluders.instances.get(slot as usize);
-            if let Some(done) = *done
+            if let Some(outcome) = *outcome
                 && let Some(instance) = known.filter(|i| cluster < i.clusters)
             {
-                let first = self.room(slot as usize, instance);
-                self.enter(first + cluster as usize, done);
+                let first = self.make_entries(slot as usize, instance);
+                self.add_outcome(first + cluster as usize, outcome);
             }
         }
-        self.done = all;
-        self.observed.over.fill(0);
+        self.outcomes = outcomes;
+        self.observed.box_counts.fill(0);
     }
 
     /// What each candidate did; none for those that were not drawn.
-    fn find_done(
+    fn find_outcomes(
         &mut self,
         drawn: &Drawn<'_>,
         occluders: &OccluderSet,
-        done: &mut Vec<Option<Done>>,
+        outcomes: &mut Vec<Option<Outcome>>,
     ) {
-        done.clear();
-        done.resize(drawn.candidates.len(), None);
+        outcomes.clear();
+        outcomes.resize(drawn.candidates.len(), None);
         for &candidate in drawn.drawn.iter().flatten() {
             let (slot, cluster) = drawn.candidates[candidate as usize].place();
             let mesh = occluders.instances.get(slot as usize);
             let cluster = mesh
                 .and_then(|i| i.mesh.as_deref())
                 .and_then(|mesh| mesh.clusters.get(cluster as usize));
-            done[candidate as usize] = Some(Done {
-                hidden: 0,
+            outcomes[candidate as usize] = Some(Outcome {
+                hidden_blocks: 0,
                 work: cluster.map_or(0, work_of),
             });
         }
         // From differences to boxes over each block, then to sums from the left.
         let width = drawn.blocks[0] as usize + 1;
-        for row in self.observed.over.chunks_mut(width) {
+        for row in self.observed.box_counts.chunks_mut(width) {
             let (mut boxes, mut sum) = (0i32, 0i32);
             for at in row {
                 boxes = boxes.saturating_add(*at);
@@ -133,13 +134,13 @@ impl OccluderUsefulness {
             }
         }
         for touched in drawn.touched.iter().flatten() {
-            if let Some(done) = &mut done[touched.candidate as usize] {
+            if let Some(outcome) = &mut outcomes[touched.candidate as usize] {
                 let row = usize::from(touched.row) * width;
-                let sum = |block: u16| self.observed.over.get(row + usize::from(block));
+                let sum = |block: u16| self.observed.box_counts.get(row + usize::from(block));
                 let ends = sum(touched.first).zip(sum(touched.last + 1));
                 let hidden = ends.map_or(0, |(first, end)| end.saturating_sub(*first).max(0));
-                done.hidden = done.hidden.saturating_add(hidden as u32);
-                done.work = done.work.saturating_add(touched.work.into());
+                outcome.hidden_blocks = outcome.hidden_blocks.saturating_add(hidden as u32);
+                outcome.work = outcome.work.saturating_add(touched.work.into());
             }
         }
     }
@@ -150,7 +151,7 @@ struct LayOver<'a> {
     query: &'a Query<'a>,
     boxes: &'a [Aabb],
     results: &'a [Visibility],
-    observed: &'a mut Observed,
+    observed: &'a mut ObservedBoxes,
 }
 
 impl Kernel for LayOver<'_> {
@@ -165,16 +166,16 @@ impl Kernel for LayOver<'_> {
             observed,
         } = self;
         let width = query.buffer.blocks_x as usize + 1;
-        if !observed.any {
-            observed.all = true;
+        if !observed.has_results {
+            observed.has_all_hidden = true;
         }
-        observed.any = true;
+        observed.has_results = true;
         let blocks = [query.buffer.blocks_x, query.buffer.blocks_y];
         if observed.blocks != blocks {
             observed.blocks = blocks;
-            observed.over.clear();
+            observed.box_counts.clear();
         }
-        observed.over.resize(width * blocks[1] as usize, 0);
+        observed.box_counts.resize(width * blocks[1] as usize, 0);
         if boxes.is_empty() {
             return;
         }
@@ -184,11 +185,11 @@ impl Kernel for LayOver<'_> {
         };
         let call = observed.calls;
         observed.calls += 1;
-        if observed.turns.len() <= call {
-            observed.turns.resize(call.min(MOST_CALLS) + 1, 0);
+        if observed.first_boxes.len() <= call {
+            observed.first_boxes.resize(call.min(MOST_CALLS) + 1, 0);
         }
         let call = call.min(MOST_CALLS);
-        let start = observed.turns[call] % boxes.len();
+        let start = observed.first_boxes[call] % boxes.len();
         let mut hidden = (start..boxes.len())
             .chain(0..start)
             // Invalid boxes are the free places of a set: results there mean nothing.
@@ -200,7 +201,7 @@ impl Kernel for LayOver<'_> {
             let mut count = 0;
             for (to, i) in eight.iter_mut().zip(&mut hidden) {
                 *to = boxes[i];
-                observed.turns[call] = i + 1;
+                observed.first_boxes[call] = i + 1;
                 count += 1;
                 seen += 1;
             }
@@ -214,13 +215,13 @@ impl Kernel for LayOver<'_> {
                 let Some([x0, y0, x1, y1]) = place.map(|b| b.map(|b| b as usize)) else {
                     continue;
                 };
-                for row in observed.over.chunks_mut(width).take(y1 + 1).skip(y0) {
+                for row in observed.box_counts.chunks_mut(width).take(y1 + 1).skip(y0) {
                     row[x0] = row[x0].saturating_add(1);
                     row[x1 + 1] = row[x1 + 1].saturating_sub(1);
                 }
             }
             if count < 8 {
-                observed.all &= seen < MOST_BOXES;
+                observed.has_all_hidden &= seen < MOST_BOXES;
                 return;
             }
         }

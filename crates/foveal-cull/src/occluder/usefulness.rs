@@ -2,31 +2,32 @@
 //!
 //! Rasterizing leaves a record: which cluster has changed which blocks of the buffer. Hidden boxes
 //! are laid over it. A cluster that changed a block within the rectangle of a hidden box has helped
-//! to hide it; one that never does is left out, and looked at again now and then. That changes
+//! to hide it; one that never does is left out, and drawn again now and then. That changes
 //! results to the safe side only: what is not drawn hides nothing.
 
 use super::set::Instance;
 use core::num::NonZeroU32;
 
-/// A cluster is left out after so many frames in which it was drawn and has hidden nothing; a frame
-/// in which all hidden boxes were looked at counts as [`STEP`].
-const PATIENCE: u8 = 24;
-const STEP: u8 = 4;
-/// Frames for which it is looked at again where not all hidden boxes are looked at.
-const AGAIN: u8 = 2;
-/// It is drawn again after so many frames, and as many more as its number says, so that not all
-/// come back in the same frame.
-const PAUSE: u32 = 12;
-const STAGGER: u32 = 16;
-/// What was known of one that was not drawn for so many frames is forgotten.
-const ABSENCE: u32 = 1000;
-/// How fast averages over frames follow.
-const FOLLOW: f32 = 0.125;
-/// Part of the time that is left which is planned for.
-const PLANNED: f64 = 0.9;
-/// How many times the usual time a frame counts at most.
-const MOST_HELD_UP: f64 = 4.0;
-/// Work that is expected of a block of a cluster that was never drawn.
+/// Idle count of a cluster from which on it is left out. Each frame in which a cluster is drawn and
+/// hides nothing adds 1, or [`IDLE_STEP`] if all hidden boxes of that frame were looked at.
+const IDLE_LIMIT: u8 = 24;
+const IDLE_STEP: u8 = 4;
+/// Frames for which a cluster that was left out is drawn again, where not all hidden boxes are
+/// looked at; where all are, one frame tells.
+const RETRY_FRAMES: u8 = 2;
+/// A cluster that is left out is drawn again this many frames after it was drawn last, and fewer
+/// than [`RETRY_RANGE`] later by its number, so that not all come back in the same frame.
+const RETRY_AFTER: u32 = 12;
+const RETRY_RANGE: u32 = 16;
+/// Frames after its last drawing when what is known of a cluster is forgotten.
+const FORGET_AFTER: u32 = 1000;
+/// Weight of the latest frame in moving averages.
+const LATEST_WEIGHT: f32 = 0.125;
+/// Part of the time that is left for which work is planned.
+const PLANNED_PART: f64 = 0.9;
+/// Largest time per unit of work that a frame counts with in the average, as a multiple of it.
+const LARGEST_OUTLIER: f64 = 4.0;
+/// Work that is expected for each block of a cluster that was never drawn.
 const BLOCK_WORK: f32 = 2.0;
 
 /// What each cluster of the occluders was worth in the frames before.
@@ -78,26 +79,28 @@ pub struct OccluderUsefulness {
     /// Nanoseconds that a unit of work takes; 0 where not known.
     unit_ns: f64,
     /// Boxes that were observed since the last frame was learned.
-    pub(crate) observed: Observed,
+    pub(crate) observed: ObservedBoxes,
     /// What each candidate did, while a frame is learned; none for those that were not drawn.
-    pub(crate) done: Vec<Option<Done>>,
+    pub(crate) outcomes: Vec<Option<Outcome>>,
 }
 
 /// Hidden boxes of a frame.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Observed {
-    /// Boxes over each block, as differences along rows that are one longer than the buffer's.
-    pub(crate) over: Vec<i32>,
+pub(crate) struct ObservedBoxes {
+    /// Number of hidden boxes over each block, as differences along rows that are one longer than
+    /// the buffer's.
+    pub(crate) box_counts: Vec<i32>,
     /// Blocks of the buffer across and down.
     pub(crate) blocks: [u32; 2],
-    /// Where the next frame begins to look, by the call within a frame.
-    pub(crate) turns: Vec<usize>,
+    /// The box with which the next frame begins, for each call of
+    /// [`observe`](OccluderUsefulness::observe) within a frame.
+    pub(crate) first_boxes: Vec<usize>,
     /// Calls since the last frame was learned.
     pub(crate) calls: usize,
-    /// Whether results were observed at all.
-    pub(crate) any: bool,
-    /// Whether all hidden boxes were looked at.
-    pub(crate) all: bool,
+    /// Whether results were observed since the last frame was learned.
+    pub(crate) has_results: bool,
+    /// Whether all hidden boxes among them were looked at.
+    pub(crate) has_all_hidden: bool,
 }
 
 /// The clusters of one slot of the set.
@@ -105,10 +108,11 @@ pub(crate) struct Observed {
 struct Slot {
     /// None where no occluder is known.
     generation: Option<NonZeroU32>,
-    first: u32,
+    first_entry: u32,
+    /// Number of clusters, with an entry each.
     count: u32,
-    /// Entries that there is room for.
-    room: u32,
+    /// Number of entries that belong to the slot.
+    capacity: u32,
 }
 
 /// What is known about one cluster.
@@ -116,17 +120,19 @@ struct Slot {
 struct Entry {
     /// The frame in which it was drawn last; 0 if never.
     drawn: u32,
-    /// Frames since it hid something, of those in which it was drawn.
+    /// Idle count: see [`IDLE_LIMIT`].
     idle: u8,
-    /// Averages over frames: blocks of hidden boxes that it covered, and work.
-    hidden: f32,
+    /// Moving averages of [`Outcome::hidden_blocks`] and of [`Outcome::work`].
+    hidden_blocks: f32,
     work: f32,
 }
 
 /// What one cluster did in a frame.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Done {
-    pub(crate) hidden: u32,
+pub(crate) struct Outcome {
+    /// Blocks that it changed, once for each hidden box over them.
+    pub(crate) hidden_blocks: u32,
+    /// Work that drawing it took, in the rasterizer's units.
     pub(crate) work: u32,
 }
 
@@ -145,9 +151,9 @@ impl OccluderUsefulness {
     /// Whether a cluster is to be drawn.
     pub(crate) fn wants(&self, slot: usize, instance: &Instance, cluster: usize) -> bool {
         self.entry(slot, instance, cluster).is_none_or(|e| {
-            e.idle < PATIENCE || {
-                let stagger = (slot + cluster) as u32 % STAGGER;
-                self.frame.wrapping_sub(e.drawn) >= PAUSE + stagger
+            e.idle < IDLE_LIMIT || {
+                let further = (slot + cluster) as u32 % RETRY_RANGE;
+                self.frame.wrapping_sub(e.drawn) >= RETRY_AFTER + further
             }
         })
     }
@@ -161,9 +167,9 @@ impl OccluderUsefulness {
         blocks: u32,
     ) -> (Option<f32>, f32) {
         match self.entry(slot, instance, cluster) {
-            // What was not drawn for long is looked at again.
-            Some(e) if e.drawn > 0 && self.frame.wrapping_sub(e.drawn) < PAUSE => {
-                (Some(e.hidden / e.work.max(1.0)), e.work)
+            // What a cluster hid so long ago says little.
+            Some(e) if e.drawn > 0 && self.frame.wrapping_sub(e.drawn) < RETRY_AFTER => {
+                (Some(e.hidden_blocks / e.work.max(1.0)), e.work)
             }
             _ => (None, BLOCK_WORK * blocks as f32),
         }
@@ -171,99 +177,100 @@ impl OccluderUsefulness {
 
     /// The work that fits into so many nanoseconds; none if that is not known.
     pub(crate) fn work_within(&self, ns: u64) -> Option<f64> {
-        (self.unit_ns > 0.0).then(|| PLANNED * ns as f64 / self.unit_ns)
+        (self.unit_ns > 0.0).then(|| PLANNED_PART * ns as f64 / self.unit_ns)
     }
 
-    /// Learns how long a unit of work takes. Frames that were held up count a little more only.
-    pub(crate) fn timed(&mut self, ns: u64, work: u64) {
+    /// Learns the time of a unit of work from a frame that took `ns` nanoseconds for `work`. A
+    /// frame that something else held up counts as [`LARGEST_OUTLIER`] times the average at most.
+    pub(crate) fn learn_unit_time(&mut self, ns: u64, work: u64) {
         if work == 0 {
             // Nothing is drawn any more: perhaps it takes less than is thought.
-            self.unit_ns *= 1.0 - f64::from(FOLLOW);
+            self.unit_ns *= 1.0 - f64::from(LATEST_WEIGHT);
         } else if ns > 0 {
             let unit = ns as f64 / work as f64;
             self.unit_ns = if self.unit_ns > 0.0 {
-                let unit = unit.min(MOST_HELD_UP * self.unit_ns);
-                self.unit_ns + (unit - self.unit_ns) * f64::from(FOLLOW)
+                let unit = unit.min(LARGEST_OUTLIER * self.unit_ns);
+                self.unit_ns + (unit - self.unit_ns) * f64::from(LATEST_WEIGHT)
             } else {
                 unit
             };
         }
     }
 
-    /// Which one of so many comes first in this frame.
-    pub(crate) fn turn(&self, count: usize) -> usize {
+    /// The one of `count` clusters of which nothing is known that this frame tries first.
+    pub(crate) fn first_unknown(&self, count: usize) -> usize {
         (self.frame as usize).wrapping_mul(7) % count.max(1)
     }
 
-    /// Makes room for the clusters of an occluder; returns the place of the first.
-    pub(crate) fn room(&mut self, slot: usize, instance: &Instance) -> usize {
+    /// The number of the first entry of an occluder, whose clusters' entries follow each other. New
+    /// entries for an occluder that has none yet, or other clusters than before.
+    pub(crate) fn make_entries(&mut self, slot: usize, instance: &Instance) -> usize {
         if self.slots.len() <= slot {
             self.slots.resize(slot + 1, Slot::NONE);
         }
         let to = &mut self.slots[slot];
         let count = instance.clusters;
         if to.generation != Some(instance.generation()) || to.count != count {
-            if to.room < count {
-                to.first = self.entries.len() as u32;
+            if to.capacity < count {
+                to.first_entry = self.entries.len() as u32;
                 let end = self.entries.len() + count as usize;
                 self.entries.resize(end, Entry::default());
-                to.room = count;
+                to.capacity = count;
             }
             to.generation = Some(instance.generation());
             to.count = count;
-            let first = to.first as usize;
+            let first = to.first_entry as usize;
             self.entries[first..first + count as usize].fill(Entry::default());
         }
-        to.first as usize
+        to.first_entry as usize
     }
 
-    /// Enters what one cluster did in this frame.
-    pub(crate) fn enter(&mut self, place: usize, done: Done) {
-        let step = if self.observed.all { STEP } else { 1 };
+    /// Adds to an entry what its cluster did in this frame.
+    pub(crate) fn add_outcome(&mut self, entry: usize, outcome: Outcome) {
+        let has_all = self.observed.has_all_hidden;
         let frame = self.frame;
-        let e = &mut self.entries[place];
-        let (hidden, work) = (done.hidden as f32, done.work as f32);
-        let is_new = e.drawn == 0 || frame.wrapping_sub(e.drawn) > ABSENCE;
+        let e = &mut self.entries[entry];
+        let (hidden_blocks, work) = (outcome.hidden_blocks as f32, outcome.work as f32);
+        let is_new = e.drawn == 0 || frame.wrapping_sub(e.drawn) > FORGET_AFTER;
         if is_new {
             *e = Entry {
-                hidden,
+                hidden_blocks,
                 work,
                 ..Entry::default()
             };
         }
-        // One that is looked at again: for a frame if that tells all, else for some.
-        if frame.wrapping_sub(e.drawn) >= PAUSE {
-            e.idle = e
-                .idle
-                .min(PATIENCE - if self.observed.all { STEP } else { AGAIN });
+        // One that was left out: it is drawn for a frame if that tells all, else for some.
+        if frame.wrapping_sub(e.drawn) >= RETRY_AFTER {
+            let retry = if has_all { IDLE_STEP } else { RETRY_FRAMES };
+            e.idle = e.idle.min(IDLE_LIMIT - retry);
         }
-        e.hidden += (hidden - e.hidden) * FOLLOW;
-        e.work += (work - e.work) * FOLLOW;
-        e.idle = if done.hidden > 0 {
+        e.hidden_blocks += (hidden_blocks - e.hidden_blocks) * LATEST_WEIGHT;
+        e.work += (work - e.work) * LATEST_WEIGHT;
+        e.idle = if outcome.hidden_blocks > 0 {
             0
         } else {
-            e.idle.saturating_add(step)
+            e.idle.saturating_add(if has_all { IDLE_STEP } else { 1 })
         };
         e.drawn = frame;
     }
 
-    /// The next frame begins. Frames are counted from 1.
-    pub(crate) fn next(&mut self) {
+    /// Counts a frame that is learned. The first is number 1.
+    pub(crate) fn count_frame(&mut self) {
         self.frame = self.frame.wrapping_add(1).max(1);
     }
 
     fn entry(&self, slot: usize, instance: &Instance, cluster: usize) -> Option<&Entry> {
         let s = self.slots.get(slot)?;
         let known = s.generation == Some(instance.generation()) && cluster < s.count as usize;
-        known.then(|| &self.entries[s.first as usize + cluster])
+        known.then(|| &self.entries[s.first_entry as usize + cluster])
     }
 }
 
 impl Slot {
     const NONE: Self = Self {
         generation: None,
-        first: 0,
+        first_entry: 0,
         count: 0,
-        room: 0,
+        capacity: 0,
     };
 }

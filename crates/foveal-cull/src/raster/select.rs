@@ -168,7 +168,7 @@ impl FrameScratch {
         let known = self.worths.partition_point(|w| w.hides.is_some());
         let (known, unknown) = self.worths.split_at_mut(known);
         // In every frame another one comes first: what others hide is never drawn nor known.
-        unknown.rotate_left(usefulness.turn(unknown.len()));
+        unknown.rotate_left(usefulness.first_unknown(unknown.len()));
         self.order.clear();
         let mut sum = 0.0;
         // Takes what fits, and the first in any case if asked for.
