@@ -1,18 +1,10 @@
 // How meshes are baked from C++: each option does what it says. Ends with 0 if all is well.
+#include "expect.hpp"
 #include "foveal_cull.hpp"
 
 #include <cstdio>
 
 namespace cull = foveal::cull;
-
-static int failures = 0;
-
-static void expect(bool holds, const char *text) {
-    if (!holds) {
-        std::fprintf(stderr, "not so: %s\n", text);
-        ++failures;
-    }
-}
 
 using Positions = std::vector<float>;
 using Indices = std::vector<std::uint32_t>;

@@ -1,18 +1,10 @@
 // Receiver masks from C++: what a lamp needs of three crates, and what is refused. Ends with 0 if all is well.
+#include "expect.hpp"
 #include "foveal_cull.hpp"
 
 #include <cstdio>
 
 namespace cull = foveal::cull;
-
-static int failures = 0;
-
-static void expect(bool holds, const char *text) {
-    if (!holds) {
-        std::fprintf(stderr, "not so: %s\n", text);
-        ++failures;
-    }
-}
 
 template <class Call> static void expect_error(FovealCullStatus status, Call call, const char *text) {
     try {

@@ -1,18 +1,10 @@
 // Usefulness from C++: an occluder that hides nothing is left out. Ends with 0 if all is well.
+#include "expect.hpp"
 #include "foveal_cull.hpp"
 
 #include <cstdio>
 
 namespace cull = foveal::cull;
-
-static int failures = 0;
-
-static void expect(bool holds, const char *text) {
-    if (!holds) {
-        std::fprintf(stderr, "not so: %s\n", text);
-        ++failures;
-    }
-}
 
 static cull::Affine at(double x, double y, double z) { return {1, 0, 0, 0, 1, 0, 0, 0, 1, x, y, z}; }
 

@@ -51,25 +51,25 @@ impl Camera {
         };
         let orthographic = projection.is_orthographic();
         let lens = Lens::new(&eye, &projection, [width, height]);
-        let lines = if orthographic {
-            lens.parallel_lines()
+        let terms = if orthographic {
+            lens.orthographic_terms()
         } else {
-            lens.lines_through_eye(to_eye, view.validity_radius_m)
+            lens.perspective_terms(to_eye, view.validity_radius_m)
         };
         let [_, _, bottom, top] = lens.extents;
         Ok(Self {
             eye: eye.position().into(),
-            rows: lines.rows,
+            rows: terms.rows,
             orthographic,
             forward: lens.forward,
-            far_depth: lines.far_depth,
+            far_depth: terms.far_depth,
             radius,
             clamp_depth,
-            shift_per_metre: lines.shift_per_metre,
-            shift: lines.shift,
+            shift_per_metre: terms.shift_per_metre,
+            shift: terms.shift,
             tan_half_fov_y: (top - bottom) * 0.5,
             near: lens.near,
-            near_reach: lines.near_corner.length() + radius,
+            near_reach: terms.near_corner.length() + radius,
         })
     }
 
@@ -120,8 +120,8 @@ struct Lens {
     far: f64,
 }
 
-/// What perspective and orthographic frusta have each in their own way; see [`Camera`].
-struct Lines {
+/// What depends on whether a frustum is perspective or orthographic; see [`Camera`].
+struct ProjectionTerms {
     rows: [DVec4; 4],
     far_depth: f64,
     shift_per_metre: f64,
@@ -150,10 +150,10 @@ impl Lens {
     }
 
     /// Of an orthographic frustum.
-    fn parallel_lines(&self) -> Lines {
+    fn orthographic_terms(&self) -> ProjectionTerms {
         let ([l, _, _, t], [sx, sy], [x, y]) = (self.extents, self.samples, self.widest);
         let k = 1.0 / (self.far - self.near);
-        Lines {
+        ProjectionTerms {
             rows: [
                 (self.right * sx).extend(-l * sx),
                 (-self.up * sy).extend(t * sy),
@@ -168,7 +168,7 @@ impl Lens {
     }
 
     /// Of a perspective frustum, whose eyes lie within `radius_m` of `to_eye` and of its opposite.
-    fn lines_through_eye(&self, to_eye: DVec3, radius_m: f64) -> Lines {
+    fn perspective_terms(&self, to_eye: DVec3, radius_m: f64) -> ProjectionTerms {
         let ([l, _, _, t], [sx, sy], [x, y]) = (self.extents, self.samples, self.widest);
         let (near, far) = (self.near, self.far);
         // Moving sideways by e shifts a point at tangent x and distance z by e / z against
@@ -182,7 +182,7 @@ impl Lens {
             let around = radius_m * (1.0 + reach * reach).sqrt();
             samples * (step + around) / near
         };
-        Lines {
+        ProjectionTerms {
             rows: [
                 (self.right * sx - self.forward * (l * sx)).extend(0.0),
                 (-self.up * sy + self.forward * (t * sy)).extend(0.0),
