@@ -4,6 +4,7 @@
 #import forward/film.wgsl
 #import shared/environment.wgsl
 #import shared/frame.wgsl
+#import shared/light.wgsl
 #import shared/light_list.wgsl
 #import shared/lighting.wgsl
 #import shared/material.wgsl
@@ -326,8 +327,7 @@ fn lobes_lit_from_afar(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3
 }
 
 // The same of a light that shines from a point.
-fn lobes_lit_by(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3f {
-    let light = light_at(index);
+fn lobes_lit_by(s: LobedSurface, v: vec3f, left: f32, index: u32, light: Light) -> vec3f {
     var a = incident(light, s.base.position);
     if !lobes_face(s, a) {
         return vec3f(0.0);
@@ -393,7 +393,7 @@ fn lit_with_lobes(lobed: LobedSurface, pixel: vec2f, distance: f32) -> vec3f {
     var walk = first_light(pixel, distance, s.base.position, facing);
     loop {
         if walk.bits != 0u {
-            sum += lobes_lit_by(s, v, left, light_number(walk));
+            sum += lobes_lit_by(s, v, left, light_number(walk), light_of(walk));
         }
         walk = next_light(walk, s.base.position, facing);
         continuing {

@@ -19,12 +19,12 @@ pub(crate) struct LightUniform {
     pub(crate) position: [f32; 3],
     pub(crate) range: f32,
     pub(crate) radiant: [f32; 3],
-    pub(crate) kind: u32,
+    pub(crate) spot_offset: f32,
     pub(crate) direction: [f32; 3],
     pub(crate) spot_scale: f32,
-    pub(crate) spot_offset: f32,
     pub(crate) cone_cos: f32,
     pub(crate) cone_sin: f32,
+    pub(crate) kind: u32,
     pub(crate) reserved: f32,
 }
 
@@ -90,12 +90,12 @@ impl LightUniform {
             position: light.position.to_array(),
             range: range.max(1e-4),
             radiant: radiant.to_array(),
-            kind,
+            spot_offset,
             direction: light.direction.to_array(),
             spot_scale,
-            spot_offset,
             cone_cos: cone.0,
             cone_sin: cone.1,
+            kind,
             reserved: 0.0,
         }
     }

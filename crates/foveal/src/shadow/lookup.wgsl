@@ -100,6 +100,11 @@ fn pyramid_softness(near: f32, tangent: f32, side: f32, height: f32) -> f32 {
     return lamp * (0.5 * side - SHADOW_BORDER) / (tangent * near);
 }
 
+// The nearest distance from which things are drawn into a light's tiles. Rust: `near_of`.
+fn shadow_near(range: f32) -> f32 {
+    return clamp(range * 1e-3, 1e-4, 0.02);
+}
+
 // Where a light's rays to a surface are looked up: as `shadow_passing` takes them. Without a tile
 // they pass.
 struct ShadowPlace {
@@ -115,11 +120,14 @@ const UNSHADOWED: ShadowPlace = ShadowPlace(ShadowTile(vec2f(0.0), 0.0, false), 
 // one tile, in that.
 fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> ShadowPlace {
     let from_light = position - light.position;
-    let lens = shadow_row(first + 1u).zw;
-    // A tangent of 0 stands for a cube.
-    let is_cube = lens.y == 0.0;
-    let side = select(0u, cube_side(from_light), is_cube);
-    let tile = shadow_tile(shadow_words(first + side / 4u)[side % 4u]);
+    let side = cube_side(from_light);
+    // Three sides' tiles; or a cone's one, three times, and its tangent, which of a cube is 0.
+    let row = u32(side >= 3u);
+    let words = shadow_words(first + row);
+    let of_three = side - 3u * row;
+    let tile = shadow_tile(select(select(words.z, words.y, of_three == 1u), words.x, of_three == 0u));
+    let cone_tangent = bitcast<f32>(words.w);
+    let is_cube = cone_tangent == 0.0;
     if tile.side == 0.0 {
         return UNSHADOWED;
     }
@@ -128,8 +136,8 @@ fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, n_
     let across = select(of_cone[0], of_cube[0], is_cube);
     let up = select(of_cone[1], of_cube[1], is_cube);
     let along = select(of_cone[2], of_cube[2], is_cube);
-    let near = lens.x;
-    let tangent = select(lens.y, 1.0, is_cube);
+    let near = shadow_near(light.range);
+    let tangent = select(cone_tangent, 1.0, is_cube);
     let texel_m = 2.0 * tangent * dot(along, from_light) / (tile.side - 2.0 * SHADOW_BORDER);
     let moved = from_light + normal * shadow_offset(tile, texel_m, n_dot_l);
     let at = vec3f(dot(across, moved), dot(up, moved), dot(along, moved));

@@ -1,13 +1,14 @@
 //! What shaders know of tiles: `shadow_words` in `shadow/tile.wgsl`.
 //!
-//! Two rows per light: the words of tiles 0 to 3; words 4 and 5, the near distance and the cone's
-//! tangent (0 for a cube). A directional light has in place of words 4 and 5 the number of its
-//! first cascade's row, and then the end of its rays and one by their length. After all lights a
-//! row per cascade: centre across and up, and half the width.
+//! Two rows per light. Of a point light: three tiles' words and a zero in each, so that a lookup
+//! reads one row. Of a spot light that has one tile: its word three times and the cone's tangent in
+//! each, so that a lookup need not know first which kind it is. Of a directional light: the words of
+//! its four cascades; the number of its first cascade's row, 0, the end of its rays, and one by
+//! their length. After all lights a row per cascade: centre across and up, and half the width.
 
 use super::footprint::MOST_MOVED;
 use super::kept::KeptTiles;
-use super::plan::{CASCADES, Plan, TILES_PER_LIGHT, near_of, spot_tangent};
+use super::plan::{CASCADES, Plan, TILES_PER_LIGHT, spot_tangent};
 use super::volume::Volume;
 use crate::lights::LightUniform;
 use crate::{LightingSettings, Shadows};
@@ -75,8 +76,11 @@ pub(super) fn rows(lights: &[LightUniform], plan: &Plan, kept: &KeptTiles) -> Ve
     // A binding must hold a row, even where there is no light.
     let mut rows = vec![[0; 4]; (lights.len() * ROWS).max(1)];
     for (number, light) in lights.iter().enumerate() {
-        rows[number * ROWS + 1][2] = near_of(light).to_bits();
-        rows[number * ROWS + 1][3] = spot_tangent(light).unwrap_or(0.0).to_bits();
+        if !light.is_directional() {
+            let tangent = spot_tangent(light).unwrap_or(0.0).to_bits();
+            rows[number * ROWS][3] = tangent;
+            rows[number * ROWS + 1][3] = tangent;
+        }
     }
     for want in &plan.wanted {
         let number = want.slot as usize / TILES_PER_LIGHT;
@@ -86,8 +90,15 @@ pub(super) fn rows(lights: &[LightUniform], plan: &Plan, kept: &KeptTiles) -> Ve
             continue;
         };
         let first = number * ROWS;
-        rows[first + tile / 4][tile % 4] =
-            place.word() | u32::from(want.follows_rate) << NARROW_BIT;
+        let word = place.word() | u32::from(want.follows_rate) << NARROW_BIT;
+        if lights[number].is_directional() {
+            rows[first][tile] = word;
+        } else if spot_tangent(&lights[number]).is_some() {
+            rows[first][..3].fill(word);
+            rows[first + 1][..3].fill(word);
+        } else {
+            rows[first + tile / 3][tile % 3] = word;
+        }
         let Volume::Column {
             center,
             radius,

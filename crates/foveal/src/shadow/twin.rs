@@ -158,7 +158,8 @@ impl Lookup {
             return self.sun_passing(first, direction, (position, normal, n_dot_l));
         }
         let from_light = position - Vec3::from(light.position);
-        let [_, _, near, spot] = self.row(first + 1);
+        let near = super::plan::near_of(light);
+        let spot = self.row(first)[3];
         let axes = if spot > 0.0 {
             axes_along(direction)
         } else {
@@ -179,7 +180,7 @@ impl Lookup {
                 .find(|&s| super::volume::cube_axes(s) == axes)
                 .unwrap()
         };
-        let word = self.rows[first + number as usize / 4][number as usize % 4];
+        let word = self.rows[first + number as usize / 3][number as usize % 3];
         let Some(tile) = tile_of(word) else {
             return 1.0;
         };

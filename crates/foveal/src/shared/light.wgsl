@@ -2,24 +2,23 @@
 
 #import shared/frame.wgsl
 
-const LIGHT_SPOT: u32 = 2u;
-
 struct Light {
     position: vec3f,
     // Metres; the light is exactly zero from here on.
     range: f32,
     // Colour times intensity.
     radiant: vec3f,
-    // 0 directional, 1 point, 2 spot.
-    kind: u32,
+    // With `spot_scale` KHR_lights_punctual's attenuation: saturate(cos * scale + offset)^2, which is
+    // 1 where there is no cone.
+    spot_offset: f32,
     // Of the rays' travel, unit.
     direction: vec3f,
-    // KHR_lights_punctual: attenuation = saturate(cos * scale + offset)^2.
     spot_scale: f32,
-    spot_offset: f32,
     // Cosine and sine of the cone's half angle; (-1, 0) without a cone.
     cone_cos: f32,
     cone_sin: f32,
+    // 0 directional, 1 point, 2 spot.
+    kind: u32,
     reserved: f32,
 }
 

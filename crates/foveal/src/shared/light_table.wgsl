@@ -32,21 +32,25 @@ fn light_sphere(index: u32) -> vec4f {
 }
 
 fn light_at(index: u32) -> Light {
+    return light_in(index, light_sphere(index));
+}
+
+// The same where its sphere is known.
+fn light_in(index: u32, sphere: vec4f) -> Light {
     let first = index * 4u + 1u;
-    let position = light_sphere(index);
     let radiant = light_row(first + 1u);
     let direction = bitcast<vec4f>(light_row(first + 2u));
     let cone = bitcast<vec4f>(light_row(first + 3u));
     return Light(
-        position.xyz,
-        position.w,
+        sphere.xyz,
+        sphere.w,
         bitcast<vec3f>(radiant.xyz),
-        radiant.w,
+        bitcast<f32>(radiant.w),
         direction.xyz,
         direction.w,
         cone.x,
         cone.y,
-        cone.z,
+        bitcast<u32>(cone.z),
         cone.w,
     );
 }
@@ -71,6 +75,11 @@ fn light_sphere(index: u32) -> vec4f {
 }
 
 fn light_at(index: u32) -> Light {
+    return lights.items[index];
+}
+
+// The same where its sphere is known.
+fn light_in(index: u32, sphere: vec4f) -> Light {
     return lights.items[index];
 }
 #endif

@@ -48,11 +48,8 @@ fn incident(light: Light, position: vec3f) -> IncidentLight {
     let direction = to_light * inverseSqrt(max(dot(to_light, to_light), 1e-20));
     // KHR_lights_punctual's recommended window: 1 - (d/range)^4.
     let ratio = squared / (light.range * light.range);
-    var attenuation = saturate(1.0 - ratio * ratio) / squared;
-    if light.kind == LIGHT_SPOT {
-        let cone = saturate(-dot(light.direction, direction) * light.spot_scale + light.spot_offset);
-        attenuation *= cone * cone;
-    }
+    let cone = saturate(-dot(light.direction, direction) * light.spot_scale + light.spot_offset);
+    let attenuation = saturate(1.0 - ratio * ratio) / squared * (cone * cone);
     return IncidentLight(direction, light.radiant * attenuation);
 }
 
@@ -134,8 +131,7 @@ fn add_directional(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, index: u32) -
 }
 
 // Adds the part of a light that shines from a point.
-fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, index: u32) -> Lit {
-    let light = light_at(index);
+fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, index: u32, light: Light) -> Lit {
     var a = incident(light, s.position);
     let n_dot_l = dot(s.normal, a.direction);
     if n_dot_l <= 0.0 || all(a.irradiance <= vec3f(0.0)) {
@@ -170,6 +166,8 @@ struct LightWalk {
     words: u32,
     word: u32,
     bits: u32,
+    // Where shadows are looked up, the first one's position, and its range in w.
+    sphere: vec4f,
 }
 
 // The lowest `count` bits; all from 32 on.
@@ -189,22 +187,15 @@ fn light_bits(first: u32, word: u32) -> u32 {
 }
 
 // Whether a light may send anything to a place with this normal; a normal of 0 faces every light.
-// Where shadows are looked up this is asked first: pixels of a cluster then look up their own
-// lights, and need not wait for those of others.
-fn may_reach(index: u32, position: vec3f, normal: vec3f) -> bool {
-#ifndef REDUCED
-    if SHADOWS != 0u {
-        let sphere = light_sphere(index);
-        let to_light = sphere.xyz - position;
-        // Rounding of the product may err, but never to the small side.
-        let faces = dot(normal, to_light) > -1e-6 * sphere.w;
-        return faces && dot(to_light, to_light) < sphere.w * sphere.w;
-    }
-#endif
-    return true;
+fn may_reach(sphere: vec4f, position: vec3f, normal: vec3f) -> bool {
+    let to_light = sphere.xyz - position;
+    // Rounding of the product may err, but never to the small side.
+    let faces = dot(normal, to_light) > -1e-6 * sphere.w;
+    return faces && dot(to_light, to_light) < sphere.w * sphere.w;
 }
 
-// The same place, or the next one whose light may reach the surface.
+// The same place, or, where shadows are looked up, the next one whose light may reach the surface:
+// pixels of a cluster then look up their own lights, and need not wait for those of others.
 fn with_lights(walk: LightWalk, position: vec3f, normal: vec3f) -> LightWalk {
     var w = walk;
     var found = false;
@@ -214,7 +205,13 @@ fn with_lights(walk: LightWalk, position: vec3f, normal: vec3f) -> LightWalk {
             w.bits = light_bits(w.first, w.word);
         }
         if w.bits != 0u {
-            found = may_reach(light_number(w), position, normal);
+            found = true;
+#ifndef REDUCED
+            if SHADOWS != 0u {
+                w.sphere = light_sphere(light_number(w));
+                found = may_reach(w.sphere, position, normal);
+            }
+#endif
             w.bits = select(w.bits & (w.bits - 1u), w.bits, found);
         }
         continuing {
@@ -230,16 +227,27 @@ fn first_light(pixel: vec2f, distance: f32, position: vec3f, normal: vec3f) -> L
     let words = light_words();
     let first = cluster_words_at(pixel, distance, words);
     let bits = select(0u, light_bits(first, 0u), words > 0u);
-    return with_lights(LightWalk(first, words, 0u, bits), position, normal);
+    return with_lights(LightWalk(first, words, 0u, bits, vec4f(0.0)), position, normal);
 }
 
 fn next_light(walk: LightWalk, position: vec3f, normal: vec3f) -> LightWalk {
     let left = walk.bits & (walk.bits - 1u);
-    return with_lights(LightWalk(walk.first, walk.words, walk.word, left), position, normal);
+    return with_lights(LightWalk(walk.first, walk.words, walk.word, left, walk.sphere), position, normal);
 }
 
 fn light_number(walk: LightWalk) -> u32 {
     return walk.word * 32u + firstTrailingBit(walk.bits);
+}
+
+// The first light of a walk.
+fn light_of(walk: LightWalk) -> Light {
+    let index = light_number(walk);
+#ifndef REDUCED
+    if SHADOWS != 0u {
+        return light_in(index, walk.sphere);
+    }
+#endif
+    return light_at(index);
 }
 
 // Radiance that leaves a surface towards the eye, and the lights' light that it comes from. Lights
@@ -262,7 +270,7 @@ fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
     var walk = first_light(pixel, distance, s.position, s.normal);
     loop {
         if walk.bits != 0u {
-            sum = add_light(sum, s, mirror, v, light_number(walk));
+            sum = add_light(sum, s, mirror, v, light_number(walk), light_of(walk));
         }
         walk = next_light(walk, s.position, s.normal);
         continuing {

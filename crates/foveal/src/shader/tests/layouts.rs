@@ -153,12 +153,12 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             position,
             range,
             radiant,
-            kind,
+            spot_offset,
             direction,
             spot_scale,
-            spot_offset,
             cone_cos,
             cone_sin,
+            kind,
             reserved
         ]
     );
