@@ -38,16 +38,15 @@ fn combine(@builtin(global_invocation_id) id: vec3u) {
         let of_pixel = entry.samples >> 24u;
         count += of_pixel;
         for (var k = 0u; k < of_pixel; k++) {
-            sum += unpack_half4(sums[i + k]);
+            sum += unpack_weighted(sums[i + k]);
             rest -= countOneBits(entries[i + k].samples & 0xffffu);
         }
         if !ALL {
             let largest = textureLoad(ordinary, pixel_of(entry), 0).rgb;
             sum += vec4f(largest, 1.0) * (weight_of(largest) * f32(rest) / f32(COUNT));
         }
-        // Weights of blinding light are so small that halves hold few digits of them: the quotient may
-        // leave the range of halves. Alpha says that there is something to store.
-        let mean = min(sum.rgb / max(sum.a, 1e-7), vec3f(65504.0));
+        // Rounding may leave the range of halves. Alpha says that there is something to store.
+        let mean = min(sum.rgb / sum.a, vec3f(65504.0));
         sums[i] = pack_half4(vec4f(mean, 1.0));
     }
     if count > 0u {

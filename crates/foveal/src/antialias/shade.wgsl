@@ -13,7 +13,7 @@ override ALL: bool = false;
 
 @group(2) @binding(2) var<storage, read> queue: Queue;
 @group(2) @binding(3) var<storage, read> entries: array<Entry>;
-// Per entry: weighted radiance, and the weight in alpha; halves.
+// Per entry: as `pack_weighted` has it.
 @group(2) @binding(4) var<storage, read_write> sums: array<vec2u>;
 
 fn all_of(pixel: vec2u) -> vec4f {
@@ -43,8 +43,8 @@ fn shade_entries(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     if ALL {
-        sums[index] = pack_half4(all_of(pixel_of(entry)));
+        sums[index] = pack_weighted(all_of(pixel_of(entry)));
     } else {
-        sums[index] = pack_half4(surface_of(pixel_of(entry), entry.samples & 0xffffu));
+        sums[index] = pack_weighted(surface_of(pixel_of(entry), entry.samples & 0xffffu));
     }
 }

@@ -36,6 +36,6 @@ fn shade_further(@builtin(global_invocation_id) id: vec3u) {
         let position = unpack_quarters(textureLoad(further_identity, texel, 0).y);
         let depth = bitcast<f32>(textureLoad(further_depth, texel, 0).x);
         let radiance = radiance_at(position, depth, load_words(gbuffer_surface, texel)).rgb;
-        sums[i] = pack_half4(weighted(radiance, countOneBits(entry.samples & 0xffffu), COUNT));
+        sums[i] = pack_weighted(weighted(radiance, countOneBits(entry.samples & 0xffffu), COUNT));
     }
 }

@@ -18,9 +18,9 @@ pub struct RadianceImage {
 }
 
 impl RadianceImage {
-    /// From the bytes of a texture of half floats, `row` texels wide, in which eyes lie as `layout`
-    /// says.
-    pub(crate) fn new(bytes: &[u8], row: u32, layout: &EyeLayout) -> Self {
+    /// `eyes` pictures from the bytes of a texture of half floats, `row` texels wide, in which eyes
+    /// lie as `layout` says: where both see the same, it holds one.
+    pub(crate) fn new(bytes: &[u8], row: u32, layout: &EyeLayout, eyes: u32) -> Self {
         let texels: Vec<[f16; 4]> = bytes
             .as_chunks::<8>()
             .0
@@ -29,8 +29,8 @@ impl RadianceImage {
             .collect();
         let row = row as usize;
         let width = layout.width as usize;
-        let columns = (0..layout.eyes as usize).flat_map(|eye| {
-            let first = eye * layout.stride as usize;
+        let columns = (0..eyes).flat_map(|eye| {
+            let first = (eye.min(layout.eyes - 1) * layout.stride) as usize;
             first..first + width
         });
         let rgb = (0..layout.height as usize)
@@ -41,9 +41,41 @@ impl RadianceImage {
             })
             .collect();
         Self {
-            width: layout.eyes * layout.width,
+            width: eyes * layout.width,
             height: layout.height,
             rgb,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn eyes_that_are_drawn_once_are_given_twice() {
+        let texels = [1.0, 2.0, 3.0, 4.0].map(|v| [v; 4].map(f16::from_f32));
+        let bytes: Vec<u8> = texels
+            .iter()
+            .flatten()
+            .flat_map(|v| v.to_le_bytes())
+            .collect();
+        let layout = |eyes, width| EyeLayout {
+            eyes,
+            width,
+            height: 1,
+            stride: width,
+        };
+        let red = |image: RadianceImage| {
+            let row: Vec<f32> = image.rgb.iter().map(|c| c[0]).collect();
+            assert_eq!(image.width as usize, row.len());
+            row
+        };
+        let once = RadianceImage::new(&bytes, 4, &layout(1, 4), 2);
+        assert_eq!(red(once), [1.0, 2.0, 3.0, 4.0, 1.0, 2.0, 3.0, 4.0]);
+        let both = RadianceImage::new(&bytes, 4, &layout(2, 2), 2);
+        assert_eq!(red(both), [1.0, 2.0, 3.0, 4.0]);
+        let one = RadianceImage::new(&bytes, 4, &layout(1, 4), 1);
+        assert_eq!(red(one), [1.0, 2.0, 3.0, 4.0]);
     }
 }

@@ -3,6 +3,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::request::densest;
 use super::{RequestUniform, acuity};
 use crate::stereo::Eye;
 use crate::{RateCombine, RateSource, Settings};
@@ -38,7 +39,7 @@ impl FinestRate {
         let request = is_bound.then(|| RequestUniform::new(s, eyes, None))?;
         // Before the geometry nobody knows where bumps are: no coarser than the request of a frame that
         // does not refine them. That is finer than this frame's away from bumps, and coarser on them.
-        let density = s.picture.width as f32 / (2.0 * request.display_from_ndc[0][0]);
+        let density = densest(s.picture.width as f32, request.display_from_ndc);
         let blocks = acuity::Blocks::of_quality(s.eye.quality_jod, density, false);
         Some(Self {
             block_at_gaze: blocks.at_gaze.min(request.block_at_gaze),

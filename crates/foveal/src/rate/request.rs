@@ -34,6 +34,12 @@ const GRADED_BY: u8 = 2;
 /// Levels by which [`RefineEdges::Graded`] refines bumpy surfaces, where samples hold light (`rate/crease_of_surface.wgsl`).
 pub(super) const BUMPY_BY: u8 = 2;
 
+/// Pixels per unit of the tangent, of the denser of two eyes.
+pub(super) fn densest(width: f32, display_from_ndc: [[f32; 4]; 2]) -> f32 {
+    let [left, right] = display_from_ndc.map(|d| d[0]);
+    width / (2.0 * left.min(right))
+}
+
 impl RequestUniform {
     /// The uniform for these settings and eyes; `lenses` are both eyes' where the output has them.
     pub(crate) fn new(s: &Settings, eyes: &[Eye; 2], lenses: Option<&[LensFit; 2]>) -> Self {
@@ -41,7 +47,7 @@ impl RequestUniform {
         let layout = EyeLayout::of(s);
         let right = [0, 1].map(|axis| s.eye.gaze[axis] + s.stereo.gaze_shift[axis]);
         let displays = [0, 1].map(|eye| acuity::display_from_ndc(s, &eyes[eye]));
-        let density = width / (2.0 * displays[0][0]);
+        let density = densest(width, displays);
         let refines = refines_bumps(s);
         let mut blocks = acuity::Blocks::of_quality(s.eye.quality_jod, density, refines);
         if refines && s.is_rated_for_kept_light() {
@@ -330,5 +336,21 @@ mod tests {
         assert_eq!(level(RateCombine::First), [3, 3]);
         assert_eq!(level(RateCombine::Coarser), [3, 8]);
         assert_eq!(level(RateCombine::Finer), [0, 3]);
+    }
+
+    #[test]
+    fn the_denser_eye_decides_whichever_it_is() {
+        let growth = |frusta: &str| {
+            let s = Settings::default().with(|s| {
+                s.stereo.mode = crate::Stereo::TwoPass;
+                s.stereo.frusta = frusta.parse().expect("it can be read");
+            });
+            RequestUniform::new(&s, &eyes_of(&s), None).block_growth
+        };
+        let [wide, dense] = ["-2,2,-1,1", "-0.5,0.5,-0.25,0.25"];
+        let expected = growth(&format!("{dense},{dense}"));
+        assert_eq!(growth(&format!("{wide},{dense}")), expected);
+        assert_eq!(growth(&format!("{dense},{wide}")), expected);
+        assert!(growth(&format!("{wide},{wide}")) > expected);
     }
 }

@@ -30,8 +30,7 @@ impl Renderer {
 
     /// The last frame's radiance, at the size at which the frame was drawn
     /// ([`PictureSettings::render_scale`](crate::PictureSettings::render_scale) makes it smaller).
-    /// Two eyes lie side by side, without lenses; eyes that see the same are one picture. Black as
-    /// [`Renderer::read_picture`] is.
+    /// Two eyes lie side by side, without lenses. Black as [`Renderer::read_picture`] is.
     ///
     /// # Errors
     /// [`Error::Setting`] where a debug view was drawn; [`Error::DeviceLost`],
@@ -51,7 +50,8 @@ impl Renderer {
         trap.finish().await?;
         let bytes = reading.bytes(&self.gpu).await?;
         let layout = EyeLayout::of(settings);
-        Ok(RadianceImage::new(&bytes, texture.width(), &layout))
+        let eyes = if settings.is_stereo() { 2 } else { 1 };
+        Ok(RadianceImage::new(&bytes, texture.width(), &layout, eyes))
     }
 
     /// What the culler found in the last frame; `None` without culling.

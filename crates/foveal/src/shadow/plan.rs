@@ -73,7 +73,9 @@ pub(super) struct ViewOfPlan {
 impl ViewOfPlan {
     pub(super) fn new(eyes: &[Eye; 2], settings: &Settings, rates: Option<FinestRate>) -> Self {
         let widest = (settings.geometry.point_size_px).max(settings.geometry.line_width_px);
-        let pixel = 2.0 * eyes[0].view_from_ndc()[1].abs() / settings.picture.height as f32;
+        // Of the denser eye.
+        let [left, right] = [0, 1].map(|eye: usize| eyes[eye].view_from_ndc()[1].abs());
+        let pixel = 2.0 * left.min(right) / settings.picture.height as f32;
         Self {
             clip_from_world: [eyes[0].clip_from_world(), eyes[1].clip_from_world()],
             center: 0.5 * (eyes[0].position() + eyes[1].position()),
@@ -233,7 +235,8 @@ fn settle(mut requests: Vec<Request>, atlas_level: u32) -> Plan {
     }
 }
 
-/// The nearest distance from which things are drawn into a light's tiles.
+/// The nearest distance from which things are drawn into a light's tiles: `shadow_near` in
+/// `shadow/lookup.wgsl`.
 pub(super) fn near_of(light: &LightUniform) -> f32 {
     (light.range * 1e-3).clamp(1e-4, 0.02)
 }

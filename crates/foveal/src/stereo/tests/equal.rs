@@ -8,7 +8,7 @@ use super::{WAYS, halves, two_eyes};
 use crate::testing::{gpu, picture, rendered, rounds_alike, small, texels};
 use crate::{
     Antialiasing, CoarseBackend, Composite, Culling, DebugView, EyeClipping, LightAssignment,
-    SamplePattern, Settings, Shading, Stereo,
+    RateSource, SamplePattern, Settings, Shading, Stereo,
 };
 
 /// Differing pixels of two pictures and the largest difference of a channel.
@@ -318,6 +318,39 @@ fn clustered_and_brute_lighting_give_the_same_bytes_for_two_eyes() {
                 texels::<[u16; 4]>(&renderer.targets().radiance_view)
             };
             assert!(radiance(&clustered) == radiance(&brute), "{eye_tangents}");
+        }
+    }
+}
+
+#[test]
+fn what_one_eye_sees_does_not_hang_on_the_others_frustum() {
+    let options = generate::DemoOptions::default();
+    let scene = generate::demo(&options).expect("the demo scene");
+    let camera = generate::demo_path(&options, 0.2);
+    for mode in [Shading::Full, Shading::Coarse] {
+        let right = |left: &str| {
+            let settings = two_eyes(256, 128).with(|s| {
+                s.shading.mode = mode;
+                s.coarse.source = RateSource::Constant;
+                s.coarse.constant_level = 2;
+                s.coarse.history = false;
+                s.stereo.frusta = format!("{left},-1,1,-0.5,0.5")
+                    .parse()
+                    .expect("it can be read");
+            });
+            let [_, right] = halves(&scene, &camera, &settings);
+            right
+        };
+        let expected = right("-1,1,-0.5,0.5");
+        for left in ["-0.3,0.3,-0.15,0.15", "-3,3,-1.5,1.5"] {
+            let differing = std::iter::zip(right(left), &expected)
+                .filter(|(a, b)| a != *b)
+                .count();
+            // Depth is rounded by what lies beside it in the target.
+            assert!(
+                differing < 164,
+                "{mode:?}, {left}: {differing} of 32768 pixels"
+            );
         }
     }
 }
