@@ -28,6 +28,9 @@ const LEAST_WEIGHT: f32 = 0.02;
 // pixel is shaded by itself: a shadow's edge or a highlight's lies between them. Found by
 // measurement.
 const MOST_APART: f32 = 0.1;
+// Part of the variance within a sample's block that counts as one between samples. Found by
+// measurement.
+const WITHIN_A_BLOCK: f32 = 0.1;
 
 // Change of depth per texel along an axis: of the two sides of a texel the one that changes less.
 fn depth_slope(texel: vec2u, axis: u32, depth: f32) -> f32 {
@@ -66,11 +69,10 @@ fn is_unsure(found: Gathered, lights: vec3f, other: vec3f) -> bool {
 }
 
 // How far a sample at `offset` pixels rises from the plane through the pixel, over its distance.
-// `pixel_width`: at distance 1.
-fn rise(pixel_width: f32, depth: f32, slope: vec2f, offset: vec2f, sample_depth: f32) -> f32 {
+fn rise(view: u32, depth: f32, slope: vec2f, offset: vec2f, sample_depth: f32) -> f32 {
     let expected = depth + dot(slope, offset);
     let there = view_distance(sample_depth);
-    let pixel_side = pixel_width * select(there, 1.0, frame.orthographic != 0u);
+    let pixel_side = pixel_width_at(view, there);
     let apart = abs(there - view_distance(max(expected, 1e-20)));
     return apart / (length(offset) * pixel_side + 1e-6 * there);
 }
@@ -78,8 +80,6 @@ fn rise(pixel_width: f32, depth: f32, slope: vec2f, offset: vec2f, sample_depth:
 fn gather(texel: vec2u, own: Tile, s: Surface, by: LightFactors, v: vec3f, depth: f32) -> Gathered {
     let slope = vec2f(depth_slope(texel, 0u, depth), depth_slope(texel, 1u, depth));
     let picture = picture_of(texel);
-    let half_width = select(frame.views[0].view_from_ndc.x, frame.views[1].view_from_ndc.x, view_of(texel) != 0u);
-    let pixel_width = 2.0 * abs(half_width) / frame.size.x;
     let side = f32(1u << own.level);
     // Of the pixel on the lattice of the level's sample points.
     let place = (vec2f(texel) - floor(0.5 * side)) / side;
@@ -98,7 +98,7 @@ fn gather(texel: vec2u, own: Tile, s: Surface, by: LightFactors, v: vec3f, depth
         let sample_depth = load_depth(gbuffer_depth, at);
         let offset = vec2f(at) - vec2f(texel);
         let near = mix(1.0 - along, along, vec2f(step));
-        let steep = rise(pixel_width, depth, slope, offset, max(sample_depth, 1e-20));
+        let steep = rise(view_of(texel), depth, slope, offset, max(sample_depth, 1e-20));
         let same_plane = 1.0 - smoothstep(ON_PLANE, OFF_PLANE, steep);
         let cosine = saturate(dot(s.normal, sampled.normal));
         let alike = mix(LEAST_ALIKE, 1.0, cosine * cosine * cosine * cosine);
@@ -111,7 +111,8 @@ fn gather(texel: vec2u, own: Tile, s: Surface, by: LightFactors, v: vec3f, depth
         sum.specular_direction += weight * luminance(mirror) * sampled.specular_direction;
         sum.spread += weight * sampled.spread;
         let shown = luminance(reflected(by, diffuse, mirror));
-        sum.squares += weight * shown * shown;
+        let within = sampled.deviation * (shown + DARK / frame.exposure);
+        sum.squares += weight * (shown * shown + WITHIN_A_BLOCK * within * within);
         sum.weight += weight;
     }
     return sum;

@@ -9,12 +9,16 @@ use crate::gpu::read_level;
 use crate::lights::LightUniform;
 use crate::shading::sample_texel;
 use crate::shading::twin::{
-    Surface, ambient, environment_reflectance, ggx_lobe, light_surface, luminance, position_at,
-    squared_alpha, to_eye, unit_from_square, unpack_shared_exponent, unpack_surface,
+    ALL_ARRIVES, Surface, ambient, environment_reflectance, ggx_lobe, light_surface_with,
+    luminance, position_at, squared_alpha, to_eye, unit_from_square, unpack_shared_exponent,
+    unpack_surface,
 };
 
+use crate::shadow::{Lookup, lookup};
 use crate::testing::{f32_of_half, gpu, rate_cells, rendered, small, texels};
-use crate::{CoarseSample, Composite, RateSource, RefineEdges, Renderer, Settings, Shading};
+use crate::{
+    CoarseSample, Composite, RateSource, RefineEdges, Renderer, Settings, Shading, Shadows,
+};
 
 /// The constants of `light.wgsl`, here and in `shading/coarse`.
 const LEAST_COSINE: f32 = 0.1;
@@ -24,6 +28,7 @@ const ON_PLANE: f32 = 0.2;
 const LEAST_ALIKE: f32 = 0.005;
 const LEAST_WEIGHT: f32 = 0.02;
 const MOST_APART: f32 = 0.1;
+const WITHIN_A_BLOCK: f32 = 0.1;
 const DARK: f32 = 0.05;
 
 /// As in `shading/coarse/light.wgsl`.
@@ -37,6 +42,8 @@ struct Joined {
     is_close: bool,
     /// Samples speak for it, but may differ.
     is_disputed: bool,
+    /// They agree; what they stand for differs within their blocks.
+    is_uneven: bool,
 }
 
 /// A sample's light; directions are unit.
@@ -47,6 +54,12 @@ struct SampleLight {
     specular_direction: Vec3,
     spread: f32,
     normal: Vec3,
+    deviation: f32,
+}
+
+/// What a surface makes of light that it scatters.
+fn scattered(s: &Surface) -> Vec3 {
+    (1.0 - s.metallic) * s.base_color / std::f32::consts::PI
 }
 
 fn highlight(n: Vec3, v: Vec3, l: Vec3, a2: f32) -> f32 {
@@ -67,6 +80,7 @@ fn unpack_light(words: [u32; 4]) -> SampleLight {
         specular_direction: unit(words[3], [0, 10], 511),
         spread: root * root,
         normal: unit(words[3], [20, 26], 31),
+        deviation: (words[2] >> 28) as f32 / 15.0,
     }
 }
 
@@ -83,6 +97,8 @@ struct Inputs<'a> {
     /// Per level: radiance and candidate, and light.
     samples: Vec<Vec<[f32; 4]>>,
     light: Vec<Vec<[u32; 4]>>,
+    /// `None` without shadows.
+    lookup: Option<Lookup>,
 }
 
 impl<'a> Inputs<'a> {
@@ -100,6 +116,7 @@ impl<'a> Inputs<'a> {
             settings,
             size: UVec2::new(settings.picture.width, settings.picture.height),
             lights: renderer.lights().1,
+            lookup: (settings.lighting.shadows != Shadows::Off).then(|| lookup(renderer)),
             surface: texels(&targets.gbuffer.surface_view),
             depth: texels(&targets.gbuffer.depth_view),
             owner: rate_cells(&coarse.rate.owner, 1),
@@ -147,6 +164,16 @@ impl<'a> Inputs<'a> {
         }
     }
 
+    /// `pixel_width_at` in `shared/frame.wgsl`.
+    fn pixel_width(&self, distance: f32) -> f32 {
+        let clip_from_view = (self.camera).clip_from_view(self.size.x as f32 / self.size.y as f32);
+        let in_metres = match self.camera.projection {
+            Projection::Perspective { .. } => distance,
+            Projection::Orthographic { .. } => 1.0,
+        };
+        2.0 / clip_from_view.x_axis.x / self.size.x as f32 * in_metres
+    }
+
     fn sample(&self, block: UVec2, level: u32, candidate: u32) -> UVec2 {
         sample_texel(block.into(), level, candidate, self.size.into()).into()
     }
@@ -183,7 +210,23 @@ impl<'a> Inputs<'a> {
             s.roughness = (a2 + 1.0 - normal.length() / count).min(1.0).powf(0.25);
         }
         let v = to_eye(self.camera, s.position);
-        let lit = light_surface(self.scene, self.lights, self.settings.lighting.model, &s, v);
+        let model = self.settings.lighting.model;
+        let block_m = match level {
+            0 => 0.0,
+            _ => self.pixel_width(self.distance(self.depth(texel))) * (1 << level) as f32,
+        };
+        let lit = light_surface_with(
+            self.scene,
+            self.lights,
+            model,
+            (&s, v),
+            &|(n, l), s, cosine| {
+                self.lookup.as_ref().map_or(ALL_ARRIVES, |lookup| {
+                    lookup.light_arriving(n, l, (s.position, s.normal, cosine), block_m)
+                })
+            },
+        );
+        let lamps = scattered(&s) * lit.diffuse + lit.specular;
         let direction = lit.direction.try_normalize().unwrap_or(s.normal);
         let specular_direction = lit.specular_direction.try_normalize().unwrap_or(s.normal);
         let together = lit.specular_direction.length() / luminance(lit.specular).max(1e-30);
@@ -198,7 +241,12 @@ impl<'a> Inputs<'a> {
             specular_direction,
             spread,
             normal: s.normal,
+            deviation: lit.variance.sqrt() / (luminance(lamps) + self.dark()),
         }
+    }
+
+    fn dark(&self) -> f32 {
+        DARK / self.settings.picture.exposure_stops.exp2()
     }
 
     fn slope(&self, texel: UVec2, axis: UVec2) -> f32 {
@@ -226,12 +274,10 @@ impl<'a> Inputs<'a> {
         let place = (texel.as_vec2() - (0.5 * side).floor()) / side;
         let along = place - place.floor();
         let last = ((self.size - 1) >> level).as_ivec2();
-        let scale = self
-            .camera
-            .clip_from_view(self.size.x as f32 / self.size.y as f32);
         let (mut diffuse, mut specular, mut sum) = (Vec3::ZERO, Vec3::ZERO, 0.0);
-        let mut squares = 0.0;
-        let scattered = (1.0 - s.metallic) * s.base_color / std::f32::consts::PI;
+        let (mut squares, mut between) = (0.0, 0.0);
+        let dark = self.dark();
+        let scattered = scattered(&s);
         let mirrored = environment_reflectance(&s, v);
         for step in [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE] {
             let block = (place.floor().as_ivec2() + step).clamp(IVec2::ZERO, last);
@@ -246,11 +292,7 @@ impl<'a> Inputs<'a> {
             }
             let offset = at.as_vec2() - texel.as_vec2();
             let there = self.distance(sample_depth);
-            let in_metres = match self.camera.projection {
-                Projection::Perspective { .. } => there,
-                Projection::Orthographic { .. } => 1.0,
-            };
-            let pixel_side = 2.0 / scale.x_axis.x / self.size.x as f32 * in_metres;
+            let pixel_side = self.pixel_width(there);
             let expected = (depth + slope.dot(offset)).max(1e-20);
             let apart = (there - self.distance(expected)).abs();
             let steep = apart / (offset.length() * pixel_side + 1e-6 * there);
@@ -266,19 +308,22 @@ impl<'a> Inputs<'a> {
             let shown = luminance(scattered * here + mirrored * mirror);
             diffuse += weight * here;
             specular += weight * mirror;
-            squares += weight * shown * shown;
+            let within = light.deviation * (shown + dark);
+            between += weight * shown * shown;
+            squares += weight * (shown * shown + WITHIN_A_BLOCK * within * within);
             sum += weight;
         }
         let other = s.emissive + ambient(self.scene, &s, v);
         let lamps = (scattered * diffuse + mirrored * specular) / sum;
         let mean = luminance(lamps);
-        let variance = (squares / sum - mean * mean).max(0.0);
-        let lit = mean + luminance(other) + DARK / self.settings.picture.exposure_stops.exp2();
-        let apart = variance.sqrt() / lit;
+        let lit = mean + luminance(other) + dark;
+        let apart_by = |squares: f32| (squares / sum - mean * mean).max(0.0).sqrt() / lit;
+        let apart = apart_by(squares);
         Joined {
             radiance: (sum >= LEAST_WEIGHT && apart <= MOST_APART).then_some(other + lamps),
             is_close: (sum - LEAST_WEIGHT).abs() < 1e-3 || (apart - MOST_APART).abs() < 0.005,
             is_disputed: sum >= LEAST_WEIGHT,
+            is_uneven: sum >= LEAST_WEIGHT && apart_by(between) < MOST_APART - 0.005,
         }
     }
 }
@@ -309,10 +354,20 @@ fn scene() -> Scene {
 #[test]
 fn samples_hold_the_lamps_light() {
     let scene = scene();
+    for shadows in [Shadows::Off, Shadows::Hard, Shadows::Soft] {
+        assert_samples_hold_the_lamps_light(&scene, shadows);
+    }
+}
+
+fn assert_samples_hold_the_lamps_light(scene: &Scene, shadows: Shadows) {
     let camera = &scene.cameras[0];
-    let renderer = rendered(&scene, camera, &settings((150, 93), CoarseSample::Center));
-    let inputs = Inputs::of(&renderer, &scene, camera);
-    let mut seen = [0; 9];
+    let settings = settings((150, 93), CoarseSample::Center).with(|s| {
+        s.lighting.shadows = shadows;
+        s.lighting.shadow_atlas = 2048;
+    });
+    let renderer = rendered(scene, camera, &settings);
+    let inputs = Inputs::of(&renderer, scene, camera);
+    let (mut seen, mut uneven, mut wrong) = ([0; 9], 0, Vec::new());
     let all = (0..93u32).flat_map(|y| (0..150u32).map(move |x| UVec2::new(x, y)));
     for texel in all {
         let level = inputs.level(texel);
@@ -325,17 +380,11 @@ fn samples_hold_the_lamps_light() {
         let found = unpack_light(inputs.light[level as usize][inputs.index(block, level)]);
         let near =
             |a: Vec3, b: Vec3| (a - b).abs().max_element() <= 0.03 * b.max_element().max(0.01);
-        assert!(
-            near(found.diffuse, twin.diffuse),
-            "diffuse at {texel}, level {level}: {} {}",
-            found.diffuse,
-            twin.diffuse
-        );
-        assert!(
-            found.direction.dot(twin.direction) > 0.999,
-            "direction at {texel}"
-        );
         assert!(found.normal.dot(twin.normal) > 0.99, "normal at {texel}");
+        uneven += u32::from(twin.deviation > 0.3);
+        let mut is_right = near(found.diffuse, twin.diffuse)
+            && found.direction.dot(twin.direction) > 0.999
+            && (found.deviation - twin.deviation.min(1.0)).abs() < 0.05;
         // A highlight's direction and height hang on each other: what a pixel makes of them counts.
         let s = inputs.surface(texel);
         let v = to_eye(camera, s.position);
@@ -349,26 +398,60 @@ fn samples_hold_the_lamps_light() {
                 )
         };
         let (a, b) = (shown(&found), shown(&twin));
-        let close = (a - b).abs().max_element() <= 0.1 * b.max_element().max(0.02);
-        assert!(close, "highlight at {texel}, level {level}: {a} {b}");
+        is_right &= (a - b).abs().max_element() <= 0.1 * b.max_element().max(0.02);
+        if !is_right {
+            wrong.push((
+                texel,
+                level,
+                found.diffuse,
+                twin.diffuse,
+                found.deviation,
+                twin.deviation,
+            ));
+        }
         seen[level as usize] += 1;
     }
     assert!(seen[..5].iter().all(|&n| n > 5), "{seen:?}");
+    let all: usize = seen.iter().sum();
+    // Where a comparison with a shadow's depth is a matter of the last bit, both are right.
+    let most = if shadows == Shadows::Off {
+        0
+    } else {
+        all / 100
+    };
+    println!(
+        "{shadows:?}: {all} samples, {uneven} uneven, {} differ",
+        wrong.len()
+    );
+    assert!(
+        wrong.len() <= most,
+        "{shadows:?}: {} of {all}: {:?}",
+        wrong.len(),
+        &wrong[..wrong.len().min(4)]
+    );
+    assert_eq!(uneven > 20, shadows != Shadows::Off, "{uneven}");
 }
 
 #[test]
 fn the_composite_of_light_equals_its_twin_and_shades_pixels_without_a_sample() {
     let scene = scene();
     let camera = &scene.cameras[0];
-    for (size, sample) in [
-        ((150, 93), CoarseSample::Center),
-        ((67, 131), CoarseSample::Typical),
+    for (size, sample, shadows) in [
+        ((150, 93), CoarseSample::Center, Shadows::Off),
+        ((67, 131), CoarseSample::Typical, Shadows::Off),
+        ((150, 93), CoarseSample::Center, Shadows::Soft),
     ] {
-        let coarse = settings(size, sample);
+        let shadowed = |s: &mut Settings| {
+            s.lighting.shadows = shadows;
+            s.lighting.shadow_atlas = 2048;
+        };
+        let coarse = settings(size, sample).with(shadowed);
         let renderer = rendered(&scene, camera, &coarse);
-        let full = radiance(&rendered(&scene, camera, &small(size.0, size.1)));
+        let full = small(size.0, size.1).with(shadowed);
+        let full = radiance(&rendered(&scene, camera, &full));
         let inputs = Inputs::of(&renderer, &scene, camera);
         let (mut wrong, mut unlit, mut disputed, mut joined) = (Vec::new(), 0, 0, 0);
+        let mut uneven = 0;
         for (i, texel) in (0..).zip(radiance(&renderer)) {
             let at = UVec2::new(i % size.0, i / size.0);
             if inputs.level(at) == 0 || inputs.depth(at) == 0.0 {
@@ -383,6 +466,7 @@ fn the_composite_of_light_equals_its_twin_and_shades_pixels_without_a_sample() {
                     assert_eq!(texel, full[i as usize], "{at} is shaded by itself");
                     unlit += 1;
                     disputed += u32::from(twin.is_disputed);
+                    uneven += u32::from(twin.is_uneven);
                 }
                 Some(twin) => {
                     let drawn = Vec3::from_array([0, 1, 2].map(|c| f32_of_half(texel[c])));
@@ -394,7 +478,7 @@ fn the_composite_of_light_equals_its_twin_and_shades_pixels_without_a_sample() {
             }
         }
         println!(
-            "{size:?}: {joined} joined, {unlit} shaded, {} differ",
+            "{size:?}, {shadows:?}: {joined} joined, {unlit} shaded, {uneven} by what is within blocks, {} differ",
             wrong.len()
         );
         // Across steep depth a last bit decides over a weight.
@@ -406,5 +490,6 @@ fn the_composite_of_light_equals_its_twin_and_shades_pixels_without_a_sample() {
         );
         assert!(joined > 2000, "{joined}");
         assert!(disputed > 20 && unlit - disputed > 20, "{unlit} {disputed}");
+        assert_eq!(uneven > 20, shadows != Shadows::Off, "{uneven}");
     }
 }

@@ -321,7 +321,7 @@ fn lobes_lit_from_afar(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3
     }
     if SHADOWS != 0u {
         let cosine = shadowed_cosine(s, a);
-        a.irradiance *= directional_passing(index, light, s.base.position, s.base.normal, cosine);
+        a.irradiance *= directional_arriving(index, light, s.base.position, s.base.normal, cosine, 0.0).part;
     }
     return lobes_reflected(s, v, left, a);
 }
@@ -334,7 +334,7 @@ fn lobes_lit_by(s: LobedSurface, v: vec3f, left: f32, index: u32, light: Light) 
     }
     if SHADOWS != 0u {
         let cosine = shadowed_cosine(s, a);
-        a.irradiance *= light_passing(index, light, s.base.position, s.base.normal, cosine);
+        a.irradiance *= light_arriving(index, light, s.base.position, s.base.normal, cosine, 0.0).part;
     }
     return lobes_reflected(s, v, left, a);
 }

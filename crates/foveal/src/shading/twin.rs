@@ -186,15 +186,28 @@ pub(crate) struct Lit {
     pub(crate) specular: Vec3,
     pub(crate) direction: Vec3,
     pub(crate) specular_direction: Vec3,
+    pub(crate) variance: f32,
 }
+
+/// What of a light's rays arrives: `Arriving` in `shared/light.wgsl`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arriving {
+    pub(crate) part: f32,
+    pub(crate) variance: f32,
+}
+
+pub(crate) const ALL_ARRIVES: Arriving = Arriving {
+    part: 1.0,
+    variance: 0.0,
+};
 
 pub(crate) fn luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// Which part of a light reaches a surface: the light with its number, the surface, and the cosine
+/// What of a light arrives at a surface: of the light with its number, the surface, and the cosine
 /// of the angle between its normal and the light's direction.
-pub(crate) type Passing<'a> = &'a dyn Fn((usize, &LightUniform), &Surface, f32) -> f32;
+pub(crate) type Passing<'a> = &'a dyn Fn((usize, &LightUniform), &Surface, f32) -> Arriving;
 
 /// Unit direction to a light, and irradiance on a surface at a position that faces it.
 pub(crate) fn incident(light: &LightUniform, position: Vec3) -> (Vec3, Vec3) {
@@ -229,16 +242,20 @@ fn from_light(
     if n_dot_l <= 0.0 || irradiance.cmple(Vec3::ZERO).all() {
         return Lit::default();
     }
-    let irradiance = irradiance * passing((number, light), s, n_dot_l);
+    let arriving = passing((number, light), s, n_dot_l);
+    let whole = irradiance * n_dot_l;
+    let irradiance = irradiance * arriving.part;
     let [diffuse_weight, specular] = reflect(model, s, v, direction, n_dot_l);
     let incident = irradiance * n_dot_l;
     let diffuse = diffuse_weight * (1.0 - s.metallic) * s.base_color / std::f32::consts::PI;
+    let unshadowed = luminance((diffuse + specular) * whole);
     Lit {
         radiance: (diffuse + specular) * incident,
         diffuse: diffuse_weight * incident,
         specular: specular * incident,
         direction: direction * luminance(irradiance),
         specular_direction: direction * luminance(specular * incident),
+        variance: arriving.variance * unshadowed * unshadowed,
     }
 }
 
@@ -251,7 +268,7 @@ pub(crate) fn light_surface(
     s: &Surface,
     v: Vec3,
 ) -> Lit {
-    light_surface_with(scene, lights, model, (s, v), &|_, _, _| 1.0)
+    light_surface_with(scene, lights, model, (s, v), &|_, _, _| ALL_ARRIVES)
 }
 
 /// The same where not all light arrives.
@@ -273,6 +290,7 @@ pub(crate) fn light_surface_with(
         sum.specular += part.specular;
         sum.direction += part.direction;
         sum.specular_direction += part.specular_direction;
+        sum.variance += part.variance;
     }
     sum
 }

@@ -112,13 +112,27 @@ struct ShadowPlace {
     at: vec2f,
     depth: f32,
     softness: f32,
+    // Change of depth along the surface's plane, from a texel to the next on the right and below.
+    slope: vec2f,
+    // Texels across and down from the place to the four that stand for the sample's block; 0: it
+    // stands for a pixel.
+    apart: f32,
 }
 
-const UNSHADOWED: ShadowPlace = ShadowPlace(ShadowTile(vec2f(0.0), 0.0, false), vec2f(0.0), 0.0, 0.0);
+const UNSHADOWED: ShadowPlace = ShadowPlace(ShadowTile(vec2f(0.0), 0.0, false), vec2f(0.0), 0.0, 0.0, vec2f(0.0), 0.0);
+
+// The largest `apart`: what is read lies within `SOFT_REACH` of the place (`shadow/records.rs`).
+const MOST_APART_TEXELS: f32 = 2.0;
+
+// `apart` of a block's width and a texel's, both in metres. Half the width reaches as far as the
+// sample's light is blended with that of the next ones.
+fn texels_apart(block_m: f32, texel_m: f32) -> f32 {
+    return select(0.0, clamp(0.5 * block_m / texel_m, 0.5, MOST_APART_TEXELS), block_m > 0.0);
+}
 
 // Of a light that shines from a point: in a side of a cube around it, or, where its cone fits into
 // one tile, in that.
-fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> ShadowPlace {
+fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32, block_m: f32) -> ShadowPlace {
     let from_light = position - light.position;
     let side = cube_side(from_light);
     // Three sides' tiles; or a cone's one, three times, and its tangent, which of a cube is 0.
@@ -145,11 +159,20 @@ fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, n_
         return UNSHADOWED;
     }
     let softness = pyramid_softness(near, tangent, tile.side, n_dot_l * length(from_light));
-    return ShadowPlace(tile, pyramid_texel(at, tangent, tile.side), near / at.z, softness);
+    // Where n p = c is the plane, seen from the light, 1 / z = (n / c) (x / z, y / z, 1).
+    let n = vec2f(dot(across, normal), -dot(up, normal));
+    let c = min(dot(vec3f(dot(across, normal), dot(up, normal), dot(along, normal)), at), -1e-4);
+    let slope = n * (near * tangent / (c * (0.5 * tile.side - SHADOW_BORDER)));
+    let apart = texels_apart(block_m, texel_m);
+    return ShadowPlace(tile, pyramid_texel(at, tangent, tile.side), near / at.z, softness, slope, apart);
 }
 
+// Planes are taken to face the sun no less than by this cosine: where less of its light falls, its
+// shadows count little.
+const LEAST_SUN_COSINE: f32 = 0.1;
+
 // Of a directional light: in the finest cascade that holds the place.
-fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> ShadowPlace {
+fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32, block_m: f32) -> ShadowPlace {
     let axes = axes_along(light.direction);
     let words = shadow_words(first);
     let cascades = shadow_words(first + 1u).x;
@@ -172,25 +195,53 @@ fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, n_do
         let depth = (span.x - dot(light.direction, moved)) * span.y;
         // Metres between two depths, times the tangent of half the angle that the light fills.
         let softness = frame.sun_tangent / (span.y * texel_m);
-        return ShadowPlace(tile, 0.5 * tile.side + vec2f(at.x, -at.y), depth, softness);
+        let n = vec2f(dot(axes[0], normal), -dot(axes[1], normal));
+        let slope = -n * (span.y * texel_m / max(n_dot_l, LEAST_SUN_COSINE));
+        let apart = texels_apart(block_m, texel_m);
+        return ShadowPlace(tile, 0.5 * tile.side + vec2f(at.x, -at.y), depth, softness, slope, apart);
     }
     return UNSHADOWED;
 }
 
-// Part of a light's rays that reach a place.
-fn place_passing(place: ShadowPlace) -> f32 {
-    if place.tile.side == 0.0 {
-        return 1.0;
+// Part of a light's rays that reach a sample's block: at four places, each blended between four
+// texels. A tap's depth follows the surface's plane where that comes nearer to the light, so that the
+// surface does not shade itself, and stays where it goes away: so no tap lies behind all surfaces that
+// are seen, as shadow/mask.rs expects of lookups.
+fn block_passing(place: ShadowPlace) -> f32 {
+    let texel = 1.0 / f32(textureDimensions(shadow_atlas).x);
+    var sum = 0.0;
+    for (var i = 0u; i < 4u; i++) {
+        let away = place.apart * (vec2f(vec2u(i, i >> 1u) & vec2u(1u)) * 2.0 - 1.0);
+        let inside = clamp(place.at + away, vec2f(1.0), vec2f(place.tile.side - 1.0)) - 0.5;
+        let first = min(floor(inside), vec2f(place.tile.side - 2.0));
+        let f = inside - first;
+        let depth = place.depth + max(dot(place.slope, away), 0.0);
+        // x lower left, y lower right, z upper right, w upper left.
+        let q = textureGatherCompare(shadow_atlas, shadow_sampler, (place.tile.corner + first + 1.0) * texel, depth);
+        sum += mix(mix(q.w, q.z, f.x), mix(q.x, q.y, f.x), f.y);
     }
-    return shadow_passing(place.tile, place.at, place.depth, place.softness);
+    return 0.25 * sum;
 }
 
-// Part of a directional light's rays that reach a surface, 0 to 1.
-fn directional_passing(index: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
-    return place_passing(place_from_sun(index * SHADOW_ROWS, light, position, normal, n_dot_l));
+fn arriving_at(place: ShadowPlace) -> Arriving {
+    if place.tile.side == 0.0 {
+        return ALL_ARRIVES;
+    }
+    let part = shadow_passing(place.tile, place.at, place.depth, place.softness);
+    var variance = 0.0;
+    if place.apart > 0.0 {
+        let over_block = block_passing(place);
+        variance = over_block * (1.0 - over_block);
+    }
+    return Arriving(part, variance);
+}
+
+// What of a directional light's rays arrives at a surface's sample; `block_m` as in `light_surface`.
+fn directional_arriving(index: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32, block_m: f32) -> Arriving {
+    return arriving_at(place_from_sun(index * SHADOW_ROWS, light, position, normal, n_dot_l, block_m));
 }
 
 // The same of a light that shines from a point.
-fn light_passing(index: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
-    return place_passing(place_from_point(index * SHADOW_ROWS, light, position, normal, n_dot_l));
+fn light_arriving(index: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32, block_m: f32) -> Arriving {
+    return arriving_at(place_from_point(index * SHADOW_ROWS, light, position, normal, n_dot_l, block_m));
 }

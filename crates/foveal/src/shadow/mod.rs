@@ -48,3 +48,5 @@ pub(crate) use pass::TileUniform;
 pub(crate) use receivers::Receivers;
 pub(crate) use records::LookupSettings;
 pub(crate) use stage::ShadowStage;
+#[cfg(test)]
+pub(crate) use {tests::lookup, twin::Lookup};

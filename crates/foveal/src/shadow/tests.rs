@@ -6,7 +6,7 @@ use glam::{Mat4, Vec2, Vec3};
 
 use super::records::LookupSettings;
 use super::twin::Lookup;
-use crate::shading::twin::{light_surface_with, position_at, to_eye, unpack_surface};
+use crate::shading::twin::{ALL_ARRIVES, light_surface_with, position_at, to_eye, unpack_surface};
 use crate::testing::{Film, f32_of_half, picture, rendered, small, texels};
 use crate::{
     Antialiasing, Geometry, LightAssignment, RateSource, Renderer, Settings, Shading, Shadows,
@@ -41,7 +41,7 @@ pub(super) fn room() -> Scene {
     scene
 }
 
-pub(super) fn lookup(renderer: &Renderer) -> Lookup {
+pub(crate) fn lookup(renderer: &Renderer) -> Lookup {
     let stage = renderer.shadows();
     Lookup {
         rows: stage.rows().to_vec(),
@@ -103,9 +103,9 @@ pub(super) fn compared_with_twin(
             light_surface_with(scene, &lights, model, (surface, v), passing).radiance
         };
         let cpu = lit(&|(number, light), s, n_dot_l| {
-            lookup.light_passing(number, light, (s.position, s.normal, n_dot_l))
+            lookup.light_arriving(number, light, (s.position, s.normal, n_dot_l), 0.0)
         });
-        let bright = lit(&|_, _, _| 1.0);
+        let bright = lit(&|_, _, _| ALL_ARRIVES);
         compared += 1;
         dark += usize::from(cpu.max_element() < 0.8 * bright.max_element());
         let tolerance = 0.01 * cpu.max_element().max(0.02);

@@ -3,9 +3,10 @@
 use glam::{Vec2, Vec3};
 
 use super::records::{CONTACT_REACH, LookupSettings, ROWS, Row};
-use super::volume::{BORDER, axes_along};
+use super::volume::{BORDER, axes_along, cube_axes};
 use crate::Shadows;
 use crate::lights::LightUniform;
+use crate::shading::twin::{ALL_ARRIVES, Arriving};
 
 /// What the shader looks up.
 pub(crate) struct Lookup {
@@ -21,6 +22,20 @@ pub(super) struct ShadowTile {
     side: u32,
     is_narrow: bool,
 }
+
+/// Where a light's rays to a surface are looked up: `ShadowPlace` in the shader.
+struct Place {
+    tile: ShadowTile,
+    at: Vec2,
+    depth: f32,
+    softness: f32,
+    slope: Vec2,
+    apart: f32,
+}
+
+/// The constants of `shadow/lookup.wgsl`.
+const MOST_APART_TEXELS: f32 = 2.0;
+const LEAST_SUN_COSINE: f32 = 0.1;
 
 fn tile_of(word: u32) -> Option<ShadowTile> {
     (word != 0).then(|| ShadowTile {
@@ -145,76 +160,116 @@ impl Lookup {
         texel_m * self.settings.texels_moved * (0.4 + slope) * filter
     }
 
-    /// `directional_passing` and `light_passing` in the shader.
+    /// Part of a light that reaches a surface's sample.
     pub(crate) fn light_passing(
         &self,
         index: usize,
         light: &LightUniform,
-        (position, normal, n_dot_l): (Vec3, Vec3, f32),
+        surface: (Vec3, Vec3, f32),
     ) -> f32 {
+        self.light_arriving(index, light, surface, 0.0).part
+    }
+
+    /// `directional_arriving` and `light_arriving` in the shader.
+    pub(crate) fn light_arriving(
+        &self,
+        index: usize,
+        light: &LightUniform,
+        surface: (Vec3, Vec3, f32),
+        block_m: f32,
+    ) -> Arriving {
         let first = index * ROWS;
-        let direction = Vec3::from(light.direction);
-        if light.is_directional() {
-            return self.sun_passing(first, direction, (position, normal, n_dot_l));
+        let place = if light.is_directional() {
+            self.place_from_sun(first, Vec3::from(light.direction), surface, block_m)
+        } else {
+            self.place_from_point(first, light, surface, block_m)
+        };
+        let Some(place) = place else {
+            return ALL_ARRIVES;
+        };
+        let over_block = match place.apart > 0.0 {
+            true => self.block_passing(&place),
+            false => 0.0,
+        };
+        Arriving {
+            part: self.passing(&place.tile, place.at, place.depth, place.softness),
+            variance: over_block * (1.0 - over_block),
         }
+    }
+
+    fn block_passing(&self, place: &Place) -> f32 {
+        let taps = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(Vec2::from);
+        let sum: f32 = taps
+            .iter()
+            .map(|tap| {
+                let away = place.apart * *tap;
+                let depth = place.depth + place.slope.dot(away).max(0.0);
+                self.compared_at(&place.tile, place.at + away, depth)
+            })
+            .sum();
+        0.25 * sum
+    }
+
+    fn place_from_point(
+        &self,
+        first: usize,
+        light: &LightUniform,
+        (position, normal, n_dot_l): (Vec3, Vec3, f32),
+        block_m: f32,
+    ) -> Option<Place> {
         let from_light = position - Vec3::from(light.position);
         let near = super::plan::near_of(light);
         let spot = self.row(first)[3];
-        let axes = if spot > 0.0 {
-            axes_along(direction)
-        } else {
-            let away = from_light.abs();
-            let axis = if away.x >= away.y && away.x >= away.z {
-                0
-            } else if away.y >= away.z {
-                1
-            } else {
-                2
-            };
-            super::volume::cube_axes(2 * axis + u32::from(from_light[axis as usize] < 0.0))
+        let side = side_of_cube(from_light);
+        let axes = match spot > 0.0 {
+            true => axes_along(light.direction.into()),
+            false => cube_axes(side),
         };
-        let number = if spot > 0.0 {
-            0
-        } else {
-            (0..6)
-                .find(|&s| super::volume::cube_axes(s) == axes)
-                .unwrap()
-        };
-        let word = self.rows[first + number as usize / 3][number as usize % 3];
-        let Some(tile) = tile_of(word) else {
-            return 1.0;
-        };
+        let word = self.rows[first + side as usize / 3][side as usize % 3];
+        let tile = tile_of(word)?;
         let tangent = if spot > 0.0 { spot } else { 1.0 };
         let inner = tile.side as f32 - 2.0 * BORDER;
         let texel_m = 2.0 * tangent * axes[2].dot(from_light) / inner;
         let moved = from_light + normal * self.offset(&tile, texel_m, n_dot_l);
         let at = Vec3::from(axes.map(|axis| axis.dot(moved)));
         if at.z <= near {
-            return 1.0;
+            return None;
         }
         let place = Vec2::new(at.x, -at.y) * (0.5 * inner / (at.z * tangent));
         let height = n_dot_l * from_light.length();
-        let softness = self.pyramid_softness(near, tangent, inner, height);
-        let place = place + 0.5 * tile.side as f32;
-        self.passing(&tile, place, near / at.z, softness)
+        let n = Vec3::from(axes.map(|axis| axis.dot(normal)));
+        let per_texel = near * tangent / (n.dot(at).min(-1e-4) * 0.5 * inner);
+        Some(Place {
+            at: place + 0.5 * tile.side as f32,
+            depth: near / at.z,
+            softness: self.pyramid_softness(near, tangent, inner, height),
+            slope: per_texel * Vec2::new(n.x, -n.y),
+            apart: texels_apart(block_m, texel_m),
+            tile,
+        })
     }
 
-    fn sun_passing(
+    fn place_from_sun(
         &self,
         first: usize,
         direction: Vec3,
         (position, normal, n_dot_l): (Vec3, Vec3, f32),
-    ) -> f32 {
-        let Some((tile, center, texel_m)) = self.cascade_at(first, direction, position) else {
-            return 1.0;
-        };
+        block_m: f32,
+    ) -> Option<Place> {
+        let (tile, center, texel_m) = self.cascade_at(first, direction, position)?;
         let [_, _, end, per_length] = self.row(first + 1);
         let moved = position + normal * self.offset(&tile, texel_m, n_dot_l);
         let at = (on_plane(direction, moved) - center) / texel_m;
-        let depth = (end - direction.dot(moved)) * per_length;
-        let place = Vec2::new(at.x, -at.y) + 0.5 * tile.side as f32;
-        let softness = self.settings.sun_tangent / (per_length * texel_m);
-        self.passing(&tile, place, depth, softness)
+        let n = on_plane(direction, normal);
+        let per_texel = per_length * texel_m / n_dot_l.max(LEAST_SUN_COSINE);
+        Some(Place {
+            at: Vec2::new(at.x, -at.y) + 0.5 * tile.side as f32,
+            depth: (end - direction.dot(moved)) * per_length,
+            softness: self.settings.sun_tangent / (per_length * texel_m),
+            slope: per_texel * Vec2::new(-n.x, n.y),
+            apart: texels_apart(block_m, texel_m),
+            tile,
+        })
     }
 
     /// The finest cascade that holds a place: its tile, its centre, and metres per texel.
@@ -238,6 +293,27 @@ impl Lookup {
             (away.max_element() <= radius - margin).then_some((tile, center, texel_m))
         })
     }
+}
+
+/// `texels_apart` in the shader.
+fn texels_apart(block_m: f32, texel_m: f32) -> f32 {
+    match block_m > 0.0 {
+        true => (0.5 * block_m / texel_m).clamp(0.5, MOST_APART_TEXELS),
+        false => 0.0,
+    }
+}
+
+/// The side of a cube that a direction from its centre points to.
+fn side_of_cube(d: Vec3) -> u32 {
+    let away = d.abs();
+    let axis = if away.x >= away.y && away.x >= away.z {
+        0
+    } else if away.y >= away.z {
+        1
+    } else {
+        2
+    };
+    2 * axis + u32::from(d[axis as usize] < 0.0)
 }
 
 /// Across and up, seen along a directional light's rays.

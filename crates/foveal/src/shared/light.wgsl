@@ -32,6 +32,16 @@ struct Lights {
     items: array<Light>,
 }
 
+// What of a light's rays arrives where it is looked at.
+struct Arriving {
+    // Part of them that reaches the sample.
+    part: f32,
+    // Variance of that part within the sample's block.
+    variance: f32,
+}
+
+const ALL_ARRIVES: Arriving = Arriving(1.0, 0.0);
+
 fn cluster_slice(distance: f32) -> u32 {
     let slice = log2(max(distance / frame.cluster_near, 1e-6)) * frame.cluster_scale + 1.0;
     return u32(clamp(slice, 0.0, f32(frame.cluster_counts.z - 1u)));

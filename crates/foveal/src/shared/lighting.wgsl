@@ -34,6 +34,8 @@ struct Lit {
     direction: vec3f,
     // The same, weighted by the luminance of specular radiance.
     specular_direction: vec3f,
+    // Variance of the luminance within the sample's block, by shadows.
+    variance: f32,
 }
 
 // Of a directional light.
@@ -93,7 +95,7 @@ fn reflect_blinn_phong(s: Surface, mirror: Mirror, v: vec3f, l: vec3f) -> Reflec
 
 // Adds what light from one direction makes of a surface's radiance, and its part in the light that
 // falls on it.
-fn add_incident(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, a: IncidentLight, n_dot_l: f32) -> Lit {
+fn add_incident(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, a: IncidentLight, n_dot_l: f32, arriving: Arriving) -> Lit {
     var r: Reflection;
     if BLINN_PHONG {
         r = reflect_blinn_phong(s, mirror, v, a.direction);
@@ -101,52 +103,55 @@ fn add_incident(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, a: IncidentLight
         r = reflect_ggx(s, mirror, v, a.direction, n_dot_l);
     }
     let reflected = r.diffuse_weight * (1.0 - s.metallic) * s.base_color / PI + r.specular;
+    let irradiance = a.irradiance * arriving.part;
+    let unshadowed = luminance(reflected * a.irradiance) * n_dot_l;
     return Lit(
-        sum.radiance + reflected * a.irradiance * n_dot_l,
-        sum.diffuse + r.diffuse_weight * a.irradiance * n_dot_l,
-        sum.specular + r.specular * a.irradiance * n_dot_l,
-        sum.direction + a.direction * luminance(a.irradiance),
-        sum.specular_direction + a.direction * (luminance(r.specular * a.irradiance) * n_dot_l),
+        sum.radiance + reflected * irradiance * n_dot_l,
+        sum.diffuse + r.diffuse_weight * irradiance * n_dot_l,
+        sum.specular + r.specular * irradiance * n_dot_l,
+        sum.direction + a.direction * luminance(irradiance),
+        sum.specular_direction + a.direction * (luminance(r.specular * irradiance) * n_dot_l),
+        sum.variance + arriving.variance * unshadowed * unshadowed,
     );
 }
 
 // Adds a directional light's part.
-fn add_directional(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, index: u32) -> Lit {
+fn add_directional(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block_m: f32, index: u32) -> Lit {
     let light = light_at(index);
-    var a = incident_from_afar(light);
+    let a = incident_from_afar(light);
     let n_dot_l = dot(s.normal, a.direction);
     if n_dot_l <= 0.0 || all(a.irradiance <= vec3f(0.0)) {
         return sum;
     }
+    var arriving = ALL_ARRIVES;
 #ifndef REDUCED
     if SHADOWS != 0u {
-        let passing = directional_passing(index, light, s.position, s.normal, n_dot_l);
-        if passing <= 0.0 {
+        arriving = directional_arriving(index, light, s.position, s.normal, n_dot_l, block_m);
+        if arriving.part <= 0.0 && arriving.variance <= 0.0 {
             return sum;
         }
-        a.irradiance *= passing;
     }
 #endif
-    return add_incident(sum, s, mirror, v, a, n_dot_l);
+    return add_incident(sum, s, mirror, v, a, n_dot_l, arriving);
 }
 
 // Adds the part of a light that shines from a point.
-fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, index: u32, light: Light) -> Lit {
-    var a = incident(light, s.position);
+fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block_m: f32, index: u32, light: Light) -> Lit {
+    let a = incident(light, s.position);
     let n_dot_l = dot(s.normal, a.direction);
     if n_dot_l <= 0.0 || all(a.irradiance <= vec3f(0.0)) {
         return sum;
     }
+    var arriving = ALL_ARRIVES;
 #ifndef REDUCED
     if SHADOWS != 0u {
-        let passing = light_passing(index, light, s.position, s.normal, n_dot_l);
-        if passing <= 0.0 {
+        arriving = light_arriving(index, light, s.position, s.normal, n_dot_l, block_m);
+        if arriving.part <= 0.0 && arriving.variance <= 0.0 {
             return sum;
         }
-        a.irradiance *= passing;
     }
 #endif
-    return add_incident(sum, s, mirror, v, a, n_dot_l);
+    return add_incident(sum, s, mirror, v, a, n_dot_l, arriving);
 }
 
 // Index of the first light word of the cluster at a position in pixels of the target and a distance
@@ -250,27 +255,29 @@ fn light_of(walk: LightWalk) -> Light {
     return light_at(index);
 }
 
-// Radiance that leaves a surface towards the eye, and the lights' light that it comes from. Lights
+// Radiance that leaves a surface towards the eye, and the lights' light that it comes from. `block_m`:
+// width of the block that the sample stands for, 0: that of a pixel, of which no variance is asked.
+// Lights
 // are summed in ascending order whichever way they are found, so that clustered and brute agree to
 // the bit. Directional ones have a loop of their own: a device that runs all branches would look up
 // both kinds' shadows for each light. The loop over the others asks at its end: such a device runs
 // the body of a loop once for its last question, too.
-fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
+fn light_surface(s: Surface, pixel: vec2f, distance: f32, block_m: f32) -> Lit {
     let v = direction_to_eye(view_at(pixel), s.position);
     let seen = environment_seen(pixel, distance);
-    var sum = Lit(s.emissive + ambient(s, v, seen), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0));
+    var sum = Lit(s.emissive + ambient(s, v, seen), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0);
     var mirror = mirror_of(s);
     if MULTIPLE_SCATTERING {
         mirror.gain = further_bounces(s, v);
     }
     let directional = directional_lights();
     for (var i = 0u; i < directional; i++) {
-        sum = add_directional(sum, s, mirror, v, i);
+        sum = add_directional(sum, s, mirror, v, block_m, i);
     }
     var walk = first_light(pixel, distance, s.position, s.normal);
     loop {
         if walk.bits != 0u {
-            sum = add_light(sum, s, mirror, v, light_number(walk), light_of(walk));
+            sum = add_light(sum, s, mirror, v, block_m, light_number(walk), light_of(walk));
         }
         walk = next_light(walk, s.position, s.normal);
         continuing {
@@ -282,5 +289,5 @@ fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
 
 // Radiance that leaves a surface towards the eye.
 fn lit(s: Surface, pixel: vec2f, distance: f32) -> vec3f {
-    return light_surface(s, pixel, distance).radiance;
+    return light_surface(s, pixel, distance, 0.0).radiance;
 }

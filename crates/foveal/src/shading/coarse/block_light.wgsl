@@ -69,18 +69,20 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
     let distance = view_distance(depth);
     var s = unpack_surface(gbuffer_words_at(texel), world_position(pixel, distance));
     var roughness = s.roughness;
+    let block_m = select(0.0, pixel_width_at(view_at(pixel), distance) * f32(1u << level), level > 0u);
     if level > 0u {
         let filtered = filter_over_block(s, block, level, distance);
         s = filtered.surface;
         roughness = filtered.roughness;
     }
-    let lit = light_surface(s, pixel, distance);
+    let lit = light_surface(s, pixel, distance, block_m);
     let v = direction_to_eye(view_at(pixel), s.position);
     let direction = unit_or(lit.direction, s.normal);
     let specular_direction = unit_or(lit.specular_direction, s.normal);
     let together = saturate(length(lit.specular_direction) / max(luminance(lit.specular), 1e-30));
     let spread = SPREAD * (1.0 - together);
     let lobe = highlight(s.normal, v, specular_direction, squared_alpha(s) + spread);
+    let lamps = luminance(diffuse_color(s) / PI * lit.diffuse + lit.specular);
     s.roughness = roughness;
     let light = SampleLight(
         lit.diffuse / max(dot(s.normal, direction), LEAST_COSINE),
@@ -89,6 +91,7 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
         specular_direction,
         spread,
         s.normal,
+        sqrt(lit.variance) / (lamps + DARK / frame.exposure),
     );
     return LitBlock(vec4f(min(lit.radiance, vec3f(65504.0)), alpha), pack_light(light));
 }

@@ -31,6 +31,9 @@ struct SampleLight {
     spread: f32,
     // The sample's mean normal, world space.
     normal: vec3f,
+    // Of the lamps' luminance within the sample's block, by shadows: the standard deviation, as a part
+    // of that luminance and DARK.
+    deviation: f32,
 }
 
 // What a surface makes of light that reaches it: its factors of scattered and of mirrored light.
@@ -68,13 +71,16 @@ fn direction_from_bits(bits: u32) -> vec3f {
 }
 
 // x: diffuse, y: specular, as shared exponents; z and w: directions as 2 x 10 bits; above them in z
-// the square root of the spread in 8 bits; above them in w the normal as 2 x 6 bits.
+// the square root of the spread in 8 bits and the deviation in 4; above them in w the normal as 2 x 6
+// bits.
 fn pack_light(l: SampleLight) -> vec4u {
     let normal = snorm_bits(octahedral_from_unit(l.normal), 31.0);
     return vec4u(
         pack_shared_exponent(l.diffuse / LIGHT_UNIT),
         pack_shared_exponent(l.specular / LIGHT_UNIT),
-        direction_bits(l.direction) | (u32(sqrt(saturate(l.spread)) * 255.0 + 0.5) << 20u),
+        direction_bits(l.direction)
+            | (u32(sqrt(saturate(l.spread)) * 255.0 + 0.5) << 20u)
+            | (u32(saturate(l.deviation) * 15.0 + 0.5) << 28u),
         direction_bits(l.specular_direction) | (normal.x << 20u) | (normal.y << 26u),
     );
 }
@@ -89,5 +95,6 @@ fn unpack_light(words: vec4u) -> SampleLight {
         direction_from_bits(words.w),
         root * root,
         unit_from_octahedral(normal),
+        f32(words.z >> 28u) / 15.0,
     );
 }

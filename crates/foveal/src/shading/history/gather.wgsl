@@ -74,5 +74,6 @@ fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
         specular_direction,
         spread,
         s.normal,
+        0.0,
     )));
 }
