@@ -230,6 +230,18 @@ fn small_files_that_ask_for_much_are_refused_before_anything_is_allocated() {
     bomb.refused(Some(Limit::Expansion));
     assert_small("morph targets");
 
+    // Weights that no morph target has, times nodes.
+    let mut bomb = Bomb::new();
+    bomb.json["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": 0 }]);
+    bomb.json["meshes"][0]["weights"] = json!(vec![0; 100_000]);
+    bomb.json["nodes"] = json!(vec![json!({ "mesh": 0 }); 1000]);
+    bomb.json["scenes"][0]["nodes"] = (0..1000).collect();
+    let scene = bomb.load().unwrap();
+    let text = "nodes[0]: has 100000 weights for 1 morph targets";
+    assert!(scene.warnings.iter().any(|w| w.text == text));
+    drop(scene);
+    assert_small("weights without targets");
+
     // Long names times instances.
     let mut bomb = Bomb::new();
     let zeros = json!({ "componentType": 5126, "count": 60_000, "type": "VEC3" });

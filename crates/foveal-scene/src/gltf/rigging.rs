@@ -347,20 +347,23 @@ fn target_count(document: &Document, node: u32) -> usize {
 fn weights_at_rest(document: &Document, node: u32, warn: &mut Vec<Warning>) -> Vec<f32> {
     let def = &document.nodes[node as usize];
     let of_mesh = def.mesh.map(|m| &document.meshes[m as usize].weights);
-    let mut weights = match of_mesh {
-        Some(of_mesh) if def.weights.is_empty() => of_mesh.clone(),
-        _ => def.weights.clone(),
+    let given = match of_mesh {
+        Some(of_mesh) if def.weights.is_empty() => of_mesh,
+        _ => &def.weights,
     };
     let count = target_count(document, node);
-    if !weights.is_empty() && weights.len() != count {
+    if !given.is_empty() && given.len() != count {
         warn.push(Warning::new(
             Code::MorphWeights,
             format!(
                 "nodes[{node}]: has {} weights for {count} morph targets",
-                weights.len()
+                given.len()
             ),
         ));
     }
-    weights.resize(count, 0.0);
+    // No more than the budget has counted: each node may show a mesh with a long list.
+    let mut weights = vec![0.0; count];
+    let kept = given.len().min(count);
+    weights[..kept].copy_from_slice(&given[..kept]);
     weights
 }
