@@ -35,7 +35,9 @@ pub(crate) fn read_shape(
             list.map(|l| l.into_iter().map(Vec3::from).collect())
                 .map_err(|e| place(e, name))
         };
-        let has_base = |set: &u32| def.attributes.uv.iter().any(|(base, _)| base == set);
+        // Sorted: a file may have as many sets as it likes.
+        let sets = &def.attributes.uv;
+        let has_base = |set: &u32| sets.binary_search_by_key(set, |(base, _)| *base).is_ok();
         let lacks_base = target.uv.iter().any(|(set, _)| !has_base(set))
             || target.color.is_some() && def.attributes.color.is_none();
         if lacks_base {

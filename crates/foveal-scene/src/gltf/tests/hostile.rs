@@ -278,6 +278,26 @@ fn sparse_morph_targets_without_a_base_are_cheap_to_declare() {
 }
 
 #[test]
+fn sets_of_texture_coordinates_take_time_in_proportion_to_their_number() {
+    // Five thousand million comparisons where each set is searched for from the first one on.
+    let mut file = File::with_triangle();
+    let base = file.floats(&[0.25; 6], "VEC2");
+    let delta = file.floats(&[0.5; 6], "VEC2");
+    let sets = |accessor: usize| {
+        let pairs = (0..100_000).map(|set| (format!("TEXCOORD_{set}"), json!(accessor)));
+        serde_json::Value::Object(pairs.collect())
+    };
+    let mut attributes = sets(base);
+    attributes["POSITION"] = file.primitive()["attributes"]["POSITION"].clone();
+    file.primitive()["attributes"] = attributes;
+    file.primitive()["targets"] = json!([sets(delta)]);
+    file.json["meshes"][0]["weights"] = json!([1]);
+    let scene = file.load();
+    assert_eq!(scene.warnings, []);
+    assert_eq!(scene.meshes[0].vertices[0].uv[0], [0.75, 0.75]);
+}
+
+#[test]
 fn the_flag_that_an_error_names_allows_what_no_file_stores() {
     // Beyond the limits of elements without stored values and of numbers.
     for targets in [20, 30] {
