@@ -39,6 +39,11 @@ impl Component {
         })
     }
 
+    /// Whether its numbers are whole and not signed.
+    pub(crate) fn is_unsigned(self) -> bool {
+        matches!(self, Self::U8 | Self::U16 | Self::U32)
+    }
+
     pub(crate) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -165,11 +170,16 @@ impl Sparse {
         };
         let (indices_view, indices_offset) = part(indices).map_err(|e| e.under("indices"))?;
         let (values_view, values_offset) = part(values).map_err(|e| e.under("values"))?;
+        let component = Component::parse(indices).map_err(|e| e.under("indices"))?;
+        if !component.is_unsigned() {
+            let cause = "is not a type of unsigned integers: 5121, 5123 or 5125";
+            return Err(Flaw::new(Code::ValueUnknown, cause).under("indices.componentType"));
+        }
         Ok(Self {
             count: count as usize,
             indices_view,
             indices_offset,
-            indices: Component::parse(indices).map_err(|e| e.under("indices"))?,
+            indices: component,
             values_view,
             values_offset,
         })

@@ -79,11 +79,7 @@ impl<'a> Reader<'a> {
     /// Elements of `N` whole numbers.
     pub(crate) fn uints<const N: usize>(&self, index: u32) -> Parsed<Vec<[u32; N]>> {
         let accessor = self.accessor(index);
-        let whole = matches!(
-            accessor.component,
-            Component::U8 | Component::U16 | Component::U32
-        );
-        if accessor.width != N || !whole {
+        if accessor.width != N || !accessor.component.is_unsigned() {
             return Err(Flaw::new(
                 Code::AccessorType,
                 format!("names accessors[{index}], whose elements are not {N} unsigned integers"),

@@ -178,6 +178,23 @@ fn sparse_accessors_replace_single_elements() {
 }
 
 #[test]
+fn sparse_indices_are_unsigned_integers() {
+    for code in [5120, 5122, 5126, 7] {
+        let mut file = File::with_triangle();
+        let at = file.view(&[2, 0, 0, 0]);
+        let values = file.view(&[0; 12]);
+        file.json["accessors"][0]["sparse"] = json!({
+            "count": 1,
+            "indices": { "bufferView": at, "componentType": code },
+            "values": { "bufferView": values },
+        });
+        let error = file.refusal();
+        let place = "broken at accessors[0].sparse.indices.componentType: is ";
+        assert!(error.contains(place), "{code}: {error}");
+    }
+}
+
+#[test]
 fn quantized_attributes_are_understood() {
     let mut file = File::with_mesh();
     let positions: [i16; 12] = [0, 0, 0, 0, 100, 0, 0, 0, 0, -100, 0, 0];
