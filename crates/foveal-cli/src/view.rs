@@ -90,7 +90,7 @@ fn host(args: &Args) -> anyhow::Result<Host> {
             CameraArgs::default()
         };
         let camera = Viewpoint::choose(&camera, &scene, name)?.at(&scene, 0.0);
-        let clip = numbered(&options.clip, &scene);
+        let clip = scene.find_clip(&options.clip).unwrap_or_default();
         foveal_host::memory::give_back();
         Ok(Loaded {
             scene,
@@ -148,16 +148,6 @@ fn clipless(flags: Vec<String>) -> Vec<String> {
         }
     }
     rest
-}
-
-/// A clip by its number, where it has one.
-fn numbered(clip: &Clip, scene: &Scene) -> Clip {
-    let Clip::Named(name) = clip else {
-        return clip.clone();
-    };
-    let found = scene.clips().position(|(other, _)| other == name);
-    let number = found.and_then(|number| u32::try_from(number).ok());
-    number.map_or_else(|| clip.clone(), Clip::Number)
 }
 
 #[cfg(test)]

@@ -10,8 +10,8 @@ use crate::values;
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Scene files")]
 pub struct ImportArgs {
-    /// Animation to play, by name or by number from 0 (`foveal scene info` lists them); `all`: all
-    /// at once [default: 0]
+    /// Animation to play, by name or else by number from 0 (`foveal scene info` lists them); `all`:
+    /// all at once, even where one has this name [default: 0]
     #[arg(long, value_name = "NAME|NUMBER|all")]
     clip: Option<Clip>,
 

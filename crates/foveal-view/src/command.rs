@@ -25,7 +25,7 @@ pub(crate) fn words(
         None => words.extend(["--exact-camera".to_owned(), (host.exact_camera)(camera)]),
     }
     if *clip != Clip::default() {
-        words.extend(["--clip".to_owned(), clip.to_string()]);
+        words.extend(["--clip".to_owned(), clip_word(clip, &scene.clips)]);
     }
     if is_animated {
         words.extend(["--time".to_owned(), time_s.to_string()]);
@@ -37,4 +37,27 @@ pub(crate) fn words(
     words.extend((host.scene_flags)(&scene.source));
     words.extend((host.flags)(settings));
     words
+}
+
+/// What `--clip` is given: a name that looks like the number would come before it, so that the
+/// number has zeros in front until none does.
+fn clip_word(clip: &Clip, clips: &[(String, f32)]) -> String {
+    let mut word = clip.to_string();
+    while matches!(clip, Clip::Number(_)) && clips.iter().any(|(name, _)| *name == word) {
+        word.insert(0, '0');
+    }
+    word
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clips_number_is_written_as_no_clip_is_named() {
+        let clips = ["2", "02", "Run"].map(|name| (name.to_owned(), 1.0));
+        assert_eq!(clip_word(&Clip::Number(2), &clips), "002");
+        assert_eq!(clip_word(&Clip::Number(1), &clips), "1");
+        assert_eq!(clip_word(&Clip::All, &clips), "all");
+    }
 }

@@ -8,7 +8,7 @@ use std::str::FromStr;
 pub enum Clip {
     /// By its number in the file, from 0.
     Number(u32),
-    /// The first one of this name.
+    /// The first one of this name; without one, the one whose number this is.
     Named(String),
     /// All together, each looped over its own length.
     All,
@@ -24,13 +24,11 @@ impl Default for Clip {
 impl FromStr for Clip {
     type Err = Infallible;
 
-    /// `all`, a number, or else a name.
+    /// `all`, or else a name, which may be a number: only the scene tells which it is.
     fn from_str(text: &str) -> Result<Self, Infallible> {
         Ok(match text {
             "all" => Self::All,
-            text => text
-                .parse()
-                .map_or_else(|_| Self::Named(text.to_owned()), Self::Number),
+            text => Self::Named(text.to_owned()),
         })
     }
 }

@@ -400,21 +400,33 @@ impl Scene {
         animations.map(|a| (a.name.as_str(), a.duration_s))
     }
 
+    /// The same clip by its number, or all of them; `None` if there is no such clip. A scene without
+    /// clips has its first.
+    #[must_use]
+    pub fn find_clip(&self, clip: &Clip) -> Option<Clip> {
+        let clips = self.animations();
+        let number = match clip {
+            Clip::All => return Some(Clip::All),
+            Clip::Number(number) => *number,
+            Clip::Named(name) => match clips.iter().position(|c| c.name == *name) {
+                Some(number) => u32::try_from(number).ok()?,
+                None => name.parse().ok()?,
+            },
+        };
+        let count = clips.len().max(1);
+        ((number as usize) < count).then_some(Clip::Number(number))
+    }
+
     /// Chooses what [`Scene::pose`] plays from now on; false, and nothing changes, if there is no
     /// such clip. A scene without clips has its first.
     pub fn play(&mut self, clip: &Clip) -> bool {
-        let clips = self.animations();
-        let played = match clip {
-            Clip::All => Some(0..clips.len()),
-            Clip::Number(0) if clips.is_empty() => Some(0..0),
-            Clip::Number(number) => Some(*number as usize)
-                .filter(|n| *n < clips.len())
-                .map(|n| n..n + 1),
-            Clip::Named(name) => clips.iter().position(|c| c.name == *name).map(|n| n..n + 1),
+        let count = self.animations().len();
+        self.rig.played = match self.find_clip(clip) {
+            None => return false,
+            Some(Clip::Number(number)) if count > 0 => number as usize..number as usize + 1,
+            Some(_) => 0..count,
         };
-        let found = played.is_some();
-        self.rig.played = played.unwrap_or_else(|| self.rig.played.clone());
-        found
+        true
     }
 
     /// Moves everything that moves to where it is at `time_s` seconds: instance matrices, boxes of

@@ -56,6 +56,45 @@ fn a_clip_plays_alone_by_name_and_by_number() {
 }
 
 #[test]
+fn a_clip_whose_name_is_a_number_goes_before_the_clip_of_that_number() {
+    let mut file = walker();
+    file.json["animations"][0]["name"] = json!("001");
+    let place = |file: &File, clip: &str| {
+        let scene = file.load_with(&with(clip)).unwrap();
+        scene.instances[0].world_from_object.w_axis.truncate()
+    };
+    for clip in ["001", "0"] {
+        assert_eq!(place(&file, clip).to_array(), [0.25, 0.0, 0.0], "{clip}");
+    }
+    for clip in ["1", "01", "Run"] {
+        assert_eq!(place(&file, clip).to_array(), [0.0, 0.5, 0.0], "{clip}");
+    }
+    file.json["animations"][1]["name"] = json!("0");
+    assert_eq!(place(&file, "0").to_array(), [0.0, 0.5, 0.0]);
+    let scene = file.load();
+    assert_eq!(
+        scene.find_clip(&"0".parse().unwrap()),
+        Some(Clip::Number(1))
+    );
+    assert_eq!(scene.find_clip(&Clip::Number(0)), Some(Clip::Number(0)));
+    assert_eq!(scene.find_clip(&Clip::Number(2)), None);
+    // A number beyond all clips is a name that none has.
+    let error = file.load_with(&with("7")).unwrap_err().to_string();
+    assert_eq!(error, "test.glb has no clip '7'; there are: 0 '001', 1 '0'");
+}
+
+#[test]
+fn a_clip_with_the_name_all_is_found_by_its_number() {
+    let mut file = walker();
+    file.json["animations"][0]["name"] = json!("all");
+    let scene = file.load_with(&with("all")).unwrap();
+    // Both play, and the second has the last word.
+    assert_eq!(scene.instances[0].world_from_object.w_axis.y, 0.5);
+    let named = Clip::Named("all".to_owned());
+    assert_eq!(scene.find_clip(&named), Some(Clip::Number(0)));
+}
+
+#[test]
 fn another_clip_may_be_played_later() {
     let mut scene = walker().load();
     assert!(scene.play(&Clip::Named("Run".to_owned())));
