@@ -46,8 +46,8 @@ impl ImageDef {
     }
 }
 
-/// For each image the first one with the same source: what is named twice is decoded once. Views
-/// that begin at the same byte hold the same picture.
+/// For each image the first one with the same source: what is named twice is decoded once. Views of
+/// the same bytes hold the same picture; compressed ones are their own.
 pub(crate) fn first_of_equal(images: &[ImageDef], views: &[View]) -> Vec<u32> {
     let mut by_uri = HashMap::new();
     let mut by_place = HashMap::new();
@@ -58,7 +58,11 @@ pub(crate) fn first_of_equal(images: &[ImageDef], views: &[View]) -> Vec<u32> {
             ImageSource::Uri(uri) => *by_uri.entry(uri.clone()).or_insert(i),
             ImageSource::View(view) => {
                 let view = &views[*view as usize];
-                *by_place.entry((view.buffer, view.offset)).or_insert(i)
+                if view.coded.is_some() {
+                    return i;
+                }
+                let place = (view.buffer, view.offset, view.len);
+                *by_place.entry(place).or_insert(i)
             }
         }
     };

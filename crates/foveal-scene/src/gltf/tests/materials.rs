@@ -146,6 +146,31 @@ fn equal_uses_share_a_texture_and_different_meanings_do_not() {
 }
 
 #[test]
+fn views_that_only_begin_at_the_same_byte_are_different_pictures() {
+    let mut file = File::with_triangle();
+    let texture = file.texture(&checker());
+    let whole = file.json["images"][texture]["bufferView"].as_u64().unwrap();
+    let mut beginning = file.json["bufferViews"][whole as usize].clone();
+    beginning["byteLength"] = json!(20);
+    let beginning = file.push("bufferViews", beginning);
+    file.json["images"][texture]["bufferView"] = json!(beginning);
+    let image = file.push("images", json!({ "bufferView": whole }));
+    let second = file.push("textures", json!({ "source": image }));
+    file.material(json!({
+        "occlusionTexture": { "index": texture },
+        "emissiveTexture": { "index": second },
+    }));
+    let scene = file.load();
+    let emissive = scene.materials[0].emissive_texture.unwrap();
+    assert_eq!(scene.textures[emissive.texture as usize].width, 4);
+    let text = warnings(&scene);
+    assert!(
+        text.contains("images[0]") && !text.contains("images[1]"),
+        "{text}"
+    );
+}
+
+#[test]
 fn samplers_say_whether_there_are_mip_levels() {
     for (min, mip, levels) in [
         (None, Some(Filter::Linear), 3),
