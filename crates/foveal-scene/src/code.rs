@@ -104,7 +104,8 @@ codes! {
     MorphIgnored = "MORPH_IGNORED",
     /// The weights of morph targets are not as many as the targets.
     MorphWeights = "MORPH_WEIGHTS",
-    /// A skin is broken, missing, or has joints that are ignored.
+    /// A skin is broken, missing, or has joints that are ignored; or a part of a mesh has no joints
+    /// for it.
     Skin = "SKIN",
     /// An animation channel is broken and is not played.
     Animation = "ANIMATION",

@@ -21,6 +21,10 @@ pub(crate) const INSTANCE_BYTES: u64 = 600;
 pub(crate) struct Part {
     pub(crate) mesh: u32,
     pub(crate) material: u32,
+    /// Its number among the primitives of the glTF mesh.
+    pub(crate) primitive: u32,
+    /// Its vertices are in world space already.
+    pub(crate) skinned: bool,
 }
 
 /// A node that shows geometry.
@@ -29,8 +33,6 @@ pub(crate) struct Shown {
     pub(crate) parts: Vec<Part>,
     /// Transforms of its instancing elements, or one identity.
     pub(crate) elements: Vec<Mat4>,
-    /// Its vertices are in world space already.
-    pub(crate) skinned: bool,
 }
 
 /// How many elements there are; `None` without instancing.
@@ -149,22 +151,25 @@ pub(crate) fn place(
         .iter()
         .flat_map(|s| (0..s.elements.len()).map(move |e| (s, e)))
         .collect();
-    let boxes = threads::map(options.parallel, &spots, |&(shown, element)| {
-        let matrix = matrix_of(shown, element, world);
-        let boxes: Vec<Aabb> = shown
-            .parts
-            .iter()
-            .map(|part| match &clouds[part.mesh as usize] {
+    let places = threads::map(options.parallel, &spots, |&(shown, element)| {
+        let own = shown.elements[element];
+        let at_node = world[shown.node as usize] * own;
+        let place = |part: &Part| {
+            let matrix = if part.skinned { own } else { at_node };
+            let bounds = match &clouds[part.mesh as usize] {
                 Some(cloud) => cloud.bounds(matrix),
                 None => Aabb::EMPTY,
-            })
-            .collect();
-        (matrix, boxes)
+            };
+            (matrix, bounds)
+        };
+        shown.parts.iter().map(place).collect::<Vec<(Mat4, Aabb)>>()
     });
     let mut placed = Placed::default();
-    for ((shown, element), (matrix, boxes)) in spots.into_iter().zip(boxes) {
-        let usable = |b: &Aabb| b.is_empty() || (b.min.is_finite() && b.max.is_finite());
-        if !matrix.is_finite() || !boxes.iter().all(usable) {
+    for ((shown, element), places) in spots.into_iter().zip(places) {
+        let usable = |(matrix, b): &(Mat4, Aabb)| {
+            matrix.is_finite() && (b.is_empty() || (b.min.is_finite() && b.max.is_finite()))
+        };
+        if !places.iter().all(usable) {
             let note = "lies beyond the range of 32-bit numbers and is left out";
             warn.push(Warning::new(
                 Code::NodeBeyondRange,
@@ -176,13 +181,13 @@ pub(crate) fn place(
         let object = placed.objects.len() as u32;
         let first = placed.instances.len() as u32;
         let mut bounds = Aabb::EMPTY;
-        for (part, part_bounds) in shown.parts.iter().zip(boxes) {
+        for (part, (world_from_object, part_bounds)) in shown.parts.iter().zip(places) {
             bounds = bounds.union(part_bounds);
             placed.instances.push(Instance {
                 mesh: part.mesh,
                 material: part.material,
                 object,
-                world_from_object: matrix,
+                world_from_object,
                 bounds: part_bounds,
             });
         }
@@ -199,14 +204,6 @@ pub(crate) fn place(
     }
     placed.clouds = clouds;
     Ok(placed)
-}
-
-pub(crate) fn matrix_of(shown: &Shown, element: usize, world: &[Mat4]) -> Mat4 {
-    if shown.skinned {
-        shown.elements[element]
-    } else {
-        world[shown.node as usize] * shown.elements[element]
-    }
 }
 
 /// Instances per mesh, checked against the limits before anything of their number is allocated.

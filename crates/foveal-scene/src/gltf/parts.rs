@@ -53,6 +53,8 @@ impl Geometry {
                 let def = &document.meshes[mesh as usize];
                 (0..def.primitives.len())
                     .map(|p| Part {
+                        primitive: p as u32,
+                        skinned: false,
                         mesh: self.number(document, mesh, p),
                         material: match def.materials[p] {
                             Some(m) if def.primitives[p].has_tangents() && turning.contains(&m) => {
@@ -74,7 +76,6 @@ impl Geometry {
                 node,
                 parts: parts.clone(),
                 elements: vec![Mat4::IDENTITY],
-                skinned: false,
             });
         }
         let bytes = instances.saturating_mul(objects::INSTANCE_BYTES);

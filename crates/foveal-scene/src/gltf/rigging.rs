@@ -118,12 +118,21 @@ impl Rigging {
             let skin = def.skin;
             self.data.nodes[node as usize].weights = weights_at_rest(document, node, warn);
             for part in &mut one.parts {
-                let Some(shape) = &shapes[part.mesh as usize] else {
+                let shape = shapes[part.mesh as usize].as_ref();
+                let has_joints = shape.is_some_and(|shape| shape.influences.is_some());
+                if skin.is_some() && !has_joints {
+                    let primitive = part.primitive;
+                    let note = format!(
+                        "nodes[{node}]: has a skin, but primitive {primitive} of its mesh has no joints; it stays rigid"
+                    );
+                    warn.push(Warning::new(Code::Skin, note));
+                }
+                let Some(shape) = shape else {
                     continue;
                 };
-                let skin = skin.filter(|_| shape.influences.is_some());
+                let skin = skin.filter(|_| has_joints);
                 if shape.targets.is_empty() && skin.is_none() {
-                    if shape.influences.is_some() {
+                    if has_joints {
                         let note = "has joints in its mesh but no skin; it stays rigid";
                         warn.push(Warning::new(Code::Skin, format!("nodes[{node}]: {note}")));
                     }
@@ -135,7 +144,7 @@ impl Rigging {
                     return Err(Flaw::too_large(cause).under(format_args!("nodes[{node}]")));
                 }
                 self.check_joints(shape, skin, node, warn);
-                one.skinned |= skin.is_some();
+                part.skinned = skin.is_some();
                 let first = !std::mem::replace(&mut taken[part.mesh as usize], true);
                 if !first {
                     let mesh = &scene.meshes[part.mesh as usize];
@@ -148,6 +157,9 @@ impl Rigging {
                     let copy = scene.meshes[part.mesh as usize].clone();
                     scene.meshes.push(copy);
                     part.mesh = scene.meshes.len() as u32 - 1;
+                }
+                if part.skinned {
+                    self.data.skinned.insert(part.mesh);
                 }
                 scene.meshes[part.mesh as usize].deforms = true;
                 self.data.deformers.push(Deformer {
@@ -205,7 +217,6 @@ impl Rigging {
                 object: i as u32,
                 node: object.node,
                 element: shown.elements[object.element as usize],
-                skinned: shown.skinned,
             });
             for part in &shown.parts {
                 if !scene.meshes[part.mesh as usize].deforms

@@ -37,8 +37,6 @@ pub(crate) struct Binding {
     pub(crate) node: u32,
     /// Transform of its EXT_mesh_gpu_instancing element.
     pub(crate) element: Mat4,
-    /// Its vertices are in world space already: the node's transform does not apply.
-    pub(crate) skinned: bool,
 }
 
 /// Everything a rig knows.
@@ -50,6 +48,8 @@ pub(crate) struct RigData {
     pub(crate) animations: Vec<Animation>,
     pub(crate) skins: Vec<Skin>,
     pub(crate) deformers: Vec<Deformer>,
+    /// Meshes whose vertices are in world space already: their nodes' transforms do not apply.
+    pub(crate) skinned: HashSet<u32>,
     pub(crate) bindings: Vec<Binding>,
     /// (camera, node).
     pub(crate) cameras: Vec<(u32, u32)>,
@@ -307,18 +307,19 @@ impl RigData {
     fn place_objects(&self, scene: &mut Scene, world: &[Mat4], mirrored: &HashSet<u32>) {
         let shown: &Scene = scene;
         let placed = threads::map(self.parallel, &self.bindings, |binding| {
-            let matrix = if binding.skinned {
-                binding.element
-            } else {
-                world[binding.node as usize] * binding.element
-            };
+            let at_node = world[binding.node as usize] * binding.element;
             let instances = shown
                 .objects
                 .get(binding.object as usize)
                 .map_or(0..0, |o| o.instances.clone());
             let of_instance = |i: u32| {
                 let Some(instance) = shown.instances.get(i as usize) else {
-                    return (matrix, Aabb::EMPTY);
+                    return (at_node, Aabb::EMPTY);
+                };
+                let matrix = if self.skinned.contains(&instance.mesh) {
+                    binding.element
+                } else {
+                    at_node
                 };
                 let matrix = if mirrored.contains(&instance.mesh) {
                     matrix * MIRROR

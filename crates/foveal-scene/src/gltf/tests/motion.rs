@@ -224,6 +224,56 @@ fn a_skin_follows_its_joints_and_ignores_its_own_node() {
 }
 
 #[test]
+fn a_primitive_without_joints_stays_rigid_at_a_node_with_a_skin() {
+    let mut file = File::with_triangle();
+    let bare = file.primitive().clone();
+    let joints = file.accessor(&[0; 12], 5121, "VEC4", 3);
+    file.primitive()["attributes"]["JOINTS_0"] = json!(joints);
+    file.attribute("WEIGHTS_0", &[1., 0., 0., 0.].repeat(3), "VEC4");
+    let primitives = file.json["meshes"][0]["primitives"].as_array_mut().unwrap();
+    primitives.push(bare.clone());
+    let two = json!({ "mesh": 0, "skin": 0, "translation": [5, 0, 0] });
+    file.json["nodes"] = json!([two, { "translation": [0, 0, 7] }]);
+    file.push("skins", json!({ "joints": [1] }));
+    // No primitive of another node's mesh has joints.
+    file.push("meshes", json!({ "primitives": [bare] }));
+    file.push(
+        "nodes",
+        json!({ "mesh": 1, "skin": 0, "translation": [0, 9, 0] }),
+    );
+    file.json["scenes"][0]["nodes"] = json!([0, 1, 2]);
+    let still = file.load();
+    let text = warnings(&still);
+    for (node, primitive) in [(0, 1), (2, 0)] {
+        let note = format!(
+            "nodes[{node}]: has a skin, but primitive {primitive} of its mesh has no joints; it stays rigid"
+        );
+        assert!(text.contains(&note), "{text}");
+    }
+    let places = |scene: &crate::Scene| {
+        let corner = |i: &crate::Instance| {
+            let vertex = scene.meshes[i.mesh as usize].vertices[0].position;
+            i.world_from_object
+                .transform_point3(vertex.into())
+                .to_array()
+        };
+        let places: Vec<_> = scene.instances.iter().map(corner).collect();
+        for (instance, place) in scene.instances.iter().zip(&places) {
+            assert_eq!(instance.bounds.min.to_array(), *place);
+        }
+        places
+    };
+    assert_eq!(places(&still), [[0., 0., 7.], [5., 0., 0.], [0., 9., 0.]]);
+    assert_eq!(still.objects[0].bounds.max, Vec3::new(6., 1., 7.));
+    let target = json!({ "node": 0, "path": "translation" });
+    let there = [5., 0., 0., 6., 0., 0.];
+    animate(&mut file, target, "LINEAR", &[0., 1.], &there, "VEC3");
+    let mut moving = file.load();
+    moving.pose(1.0);
+    assert_eq!(places(&moving), [[0., 0., 7.], [6., 0., 0.], [0., 9., 0.]]);
+}
+
+#[test]
 fn morph_targets_move_colours_and_texture_coordinates() {
     let mut file = File::with_triangle();
     file.attribute("COLOR_0", &[0.2, 0.4, 0.6].repeat(3), "VEC3");
