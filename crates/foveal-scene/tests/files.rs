@@ -20,11 +20,14 @@ fn write_scene(folder: &Path, buffer: &str, picture: &str) {
             "scene": 0,
             "scenes": [{{ "nodes": [0] }}],
             "nodes": [{{ "mesh": 0 }}],
-            "meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": 0 }}, "material": 0 }}] }}],
+            "meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": 0, "TEXCOORD_0": 1 }}, "material": 0 }}] }}],
             "materials": [{{ "pbrMetallicRoughness": {{ "baseColorTexture": {{ "index": 0 }} }} }}],
             "textures": [{{ "source": 0 }}],
             "images": [{{ "uri": "{picture}" }}],
-            "accessors": [{{ "bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3 }}],
+            "accessors": [
+                {{ "bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3 }},
+                {{ "bufferView": 0, "componentType": 5126, "type": "VEC2", "count": 3 }}
+            ],
             "bufferViews": [{{ "buffer": 0, "byteLength": 36 }}],
             "buffers": [{{ "uri": "{buffer}", "byteLength": 36 }}]
         }}"#

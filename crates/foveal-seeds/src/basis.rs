@@ -33,6 +33,7 @@ pub fn ktx2_file(picture: &[u8]) -> File {
     let basis = json!({ "KHR_texture_basisu": { "source": image } });
     let texture = file.push("textures", json!({ "extensions": basis }));
     file.json["extensionsRequired"] = json!(["KHR_texture_basisu"]);
+    file.attribute("TEXCOORD_0", &[0., 0., 1., 0., 0., 1.], "VEC2");
     file.material(json!({ "emissiveTexture": { "index": texture } }));
     file
 }

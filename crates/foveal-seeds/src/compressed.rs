@@ -153,6 +153,7 @@ pub fn webp_file() -> File {
     file.json["textures"][texture]["extensions"] =
         json!({ "EXT_texture_webp": { "source": webp } });
     file.json["extensionsRequired"] = json!(["EXT_texture_webp"]);
+    file.attribute("TEXCOORD_0", &[0., 0., 1., 0., 0., 1.], "VEC2");
     file.material(json!({ "emissiveTexture": { "index": texture } }));
     file
 }

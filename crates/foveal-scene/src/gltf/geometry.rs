@@ -65,7 +65,7 @@ pub(crate) fn build(
     drop_unusable(&mut indices, def.mode, &positions, &mut notes);
 
     let mut source = compact(&mut indices, positions.len());
-    let mut vertices = assemble(request, reader, &positions, &source, &mut notes)?;
+    let mut vertices = assemble(request, reader, &positions, &source)?;
     drop(positions);
 
     let makes_triangles = def.mode.makes_triangles();
@@ -161,13 +161,23 @@ fn compact(indices: &mut [u32], vertex_count: usize) -> Vec<u32> {
     source
 }
 
+/// Which texture coordinates a material reads in vain.
+pub(crate) fn missing_uvs(request: &Request) -> impl Iterator<Item = Warning> {
+    let given = &request.primitive.attributes.uv;
+    let sets = request.uv_sets.into_iter().flatten();
+    let missing = sets.filter(|set| given.iter().all(|(number, _)| number != set));
+    missing.map(|set| {
+        let text = format!("has no TEXCOORD_{set} although its material reads it; (0, 0) is used");
+        Warning::new(Code::TexcoordsMissing, text)
+    })
+}
+
 /// Vertices with every attribute that the file gives.
 fn assemble(
     request: &Request,
     reader: Reader<'_>,
     positions: &[[f32; 3]],
     source: &[u32],
-    notes: &mut Vec<Warning>,
 ) -> Parsed<Vec<Vertex>> {
     let attributes = &request.primitive.attributes;
     let mut vertices: Vec<Vertex> = source
@@ -199,20 +209,11 @@ fn assemble(
     }
     for (slot, set) in request.uv_sets.iter().enumerate() {
         let Some(set) = *set else { continue };
-        match attributes.uv.iter().find(|(number, _)| *number == set) {
-            Some(&(_, accessor)) => {
-                let list = reader.floats::<2>(accessor);
-                fill.with(list, &format!("TEXCOORD_{set}"), |v, uv| {
-                    v.uv[slot] = uv.map(|x| if x.is_finite() { x } else { 0.0 });
-                })?;
-            }
-            None if request.tangents_for.is_some() || slot > 0 || set > 0 => {
-                notes.push(Warning::new(
-                    Code::TexcoordsMissing,
-                    format!("has no TEXCOORD_{set} although its material reads it; (0, 0) is used"),
-                ))
-            }
-            None => {}
+        if let Some(&(_, accessor)) = attributes.uv.iter().find(|(number, _)| *number == set) {
+            let list = reader.floats::<2>(accessor);
+            fill.with(list, &format!("TEXCOORD_{set}"), |v, uv| {
+                v.uv[slot] = uv.map(|x| if x.is_finite() { x } else { 0.0 });
+            })?;
         }
     }
     if let Some(accessor) = attributes.color {

@@ -156,8 +156,13 @@ impl MaterialDef {
             .or(anisotropy.map(|_| TextureSlot::Anisotropy))
     }
 
-    /// Maps the sets in use to the two slots, lowest set first; true when some did not fit.
-    pub(crate) fn uv_sets(&self) -> (UvSets, bool) {
+    /// Whether it reads any texture, and so its coordinates.
+    pub(crate) fn reads_uvs(&self) -> bool {
+        self.texture_sets().next().is_some()
+    }
+
+    /// The set of texture coordinates of each texture, the most visible textures first.
+    fn texture_sets(&self) -> impl Iterator<Item = u32> {
         let slots = [
             self.base_color,
             self.metallic_roughness,
@@ -165,13 +170,16 @@ impl MaterialDef {
             self.occlusion,
             self.emissive,
         ];
-        let further = further_textures(&self.material);
-        let further = further.iter().flatten().map(|slot| slot.uv_set);
-        let slots = slots.iter().flatten().map(|slot| slot.set);
-        let mut sets: Vec<u32> = slots.chain(further).collect();
-        // The most visible sets win where there are more than two: the order of `slots`.
+        let further = further_textures(&self.material).into_iter().flatten();
+        let slots = slots.into_iter().flatten().map(|slot| slot.set);
+        slots.chain(further.map(|slot| slot.uv_set))
+    }
+
+    /// Maps the sets in use to the two slots, lowest set first; true when some did not fit.
+    pub(crate) fn uv_sets(&self) -> (UvSets, bool) {
+        // The most visible sets win where there are more than two.
         let mut kept: Vec<u32> = Vec::new();
-        for set in sets.drain(..) {
+        for set in self.texture_sets() {
             if !kept.contains(&set) {
                 kept.push(set);
             }

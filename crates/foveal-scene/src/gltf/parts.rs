@@ -16,12 +16,21 @@ use crate::error::{Flaw, Limit, Parsed};
 use crate::pose::Shape;
 use crate::{LoadOptions, Material, MissingNormals, Scene, Vertex, Warning, threads};
 
+/// A mesh to build.
+struct Asked {
+    request: Request,
+    /// Of the first primitive that asks for it.
+    place: String,
+    name: String,
+    /// Of the first primitive whose material reads texture coordinates.
+    reads_uvs: Option<String>,
+}
+
 /// The meshes to build, each once however many primitives ask for it.
 #[derive(Default)]
 pub(crate) struct Geometry {
-    requests: Vec<(Request, String)>,
+    asked: Vec<Asked>,
     numbers: HashMap<Request, u32>,
-    names: Vec<String>,
     /// Of materials whose generated tangents turn in poses, by their numbers: copies for meshes whose
     /// tangents are the file's.
     pub(crate) copies: HashMap<u32, u32>,
@@ -112,12 +121,22 @@ impl Geometry {
             uv_sets,
             tangents_for,
         };
-        *self.numbers.entry(request.clone()).or_insert_with(|| {
-            let place = format!("meshes[{mesh}].primitives[{primitive}]");
-            self.requests.push((request, place));
-            self.names.push(def.label(mesh, primitive));
-            self.names.len() as u32 - 1
-        })
+        let place = || format!("meshes[{mesh}].primitives[{primitive}]");
+        let asked = &mut self.asked;
+        let number = *self.numbers.entry(request.clone()).or_insert_with(|| {
+            asked.push(Asked {
+                request,
+                place: place(),
+                name: def.label(mesh, primitive),
+                reads_uvs: None,
+            });
+            asked.len() as u32 - 1
+        });
+        if material.is_some_and(MaterialDef::reads_uvs) {
+            let reads_uvs = &mut self.asked[number as usize].reads_uvs;
+            reads_uvs.get_or_insert_with(place);
+        }
+        number
     }
 
     /// Builds all meshes into the scene and returns their shapes, as many as meshes.
@@ -129,18 +148,22 @@ impl Geometry {
         warn: &mut Vec<Warning>,
     ) -> Parsed<Vec<Option<Shape>>> {
         self.check_size(reader, options)?;
-        let built = threads::map(options.parallel, &self.requests, |(request, place)| {
-            geometry::build(request, reader, options.missing_normals).map_err(|e| e.under(place))
+        let built = threads::map(options.parallel, &self.asked, |asked| {
+            geometry::build(&asked.request, reader, options.missing_normals)
+                .map_err(|e| e.under(&asked.place))
         });
         let mut shapes = Vec::with_capacity(built.len());
-        for ((built, (_, place)), name) in built.into_iter().zip(&self.requests).zip(&self.names) {
+        for (built, asked) in built.into_iter().zip(&self.asked) {
             let Built {
                 mut mesh,
                 shape,
                 notes,
             } = built?;
-            warn.extend(notes.into_iter().map(|note| note.at(place)));
-            mesh.name.clone_from(name);
+            warn.extend(notes.into_iter().map(|note| note.at(&asked.place)));
+            if let Some(place) = asked.reads_uvs.as_ref().filter(|_| !mesh.is_empty()) {
+                warn.extend(geometry::missing_uvs(&asked.request).map(|note| note.at(place)));
+            }
+            mesh.name.clone_from(&asked.name);
             scene.meshes.push(mesh);
             shapes.push(shape);
         }
@@ -150,7 +173,7 @@ impl Geometry {
     /// Adds up the vertices and corners that will come of it before anything is allocated.
     fn check_size(&self, reader: Reader<'_>, options: &LoadOptions) -> Parsed<()> {
         let (mut vertices, mut corners, mut bytes) = (0u64, 0u64, 0u64);
-        for (request, place) in &self.requests {
+        for Asked { request, place, .. } in &self.asked {
             let def = &request.primitive;
             let count = |a: u32| reader.accessor(a).count as u64;
             let positions = def.attributes.position.map_or(0, count);

@@ -195,6 +195,41 @@ fn sparse_indices_are_unsigned_integers() {
 }
 
 #[test]
+fn texture_coordinates_that_are_read_in_vain_are_missed() {
+    let load = |material: Option<serde_json::Value>| {
+        let mut file = File::with_triangle();
+        file.texture(&image::RgbaImage::new(1, 1));
+        let plain = file.primitive().clone();
+        if let Some(material) = material {
+            file.material(material);
+        }
+        // Without a material it is the same mesh.
+        let primitives = file.json["meshes"][0]["primitives"].as_array_mut().unwrap();
+        primitives.insert(0, plain);
+        warnings(&file.load())
+    };
+    let slot = json!({ "index": 0 });
+    let missing =
+        "meshes[0].primitives[1]: has no TEXCOORD_0 although its material reads it; (0, 0) is used";
+    for material in [
+        json!({ "pbrMetallicRoughness": { "baseColorTexture": slot } }),
+        json!({ "emissiveTexture": slot }),
+        json!({ "normalTexture": slot }),
+        json!({ "extensions": { "KHR_materials_sheen": { "sheenColorFactor": [1, 1, 1], "sheenColorTexture": slot } } }),
+    ] {
+        assert_eq!(load(Some(material)), missing);
+    }
+    let anisotropic = json!({ "KHR_materials_anisotropy": { "anisotropyStrength": 1 } });
+    for material in [
+        None,
+        Some(json!({})),
+        Some(json!({ "extensions": anisotropic })),
+    ] {
+        assert_eq!(load(material), "");
+    }
+}
+
+#[test]
 fn quantized_attributes_are_understood() {
     let mut file = File::with_mesh();
     let positions: [i16; 12] = [0, 0, 0, 0, 100, 0, 0, 0, 0, -100, 0, 0];

@@ -78,6 +78,7 @@ fn lobes_are_read_with_their_textures() {
 #[test]
 fn transmission_is_read_with_its_volume() {
     let mut file = File::with_triangle();
+    file.attribute("TEXCOORD_0", &[0., 0., 1., 0., 0., 1.], "VEC2");
     let picture = file.texture(&RgbaImage::from_pixel(1, 1, Rgba([255; 4])));
     let slot = json!({ "index": picture });
     let scene = with(
@@ -108,6 +109,7 @@ fn transmission_is_read_with_its_volume() {
 #[test]
 fn iridescence_is_read_within_what_there_is() {
     let mut file = File::with_triangle();
+    file.attribute("TEXCOORD_0", &[0., 0., 1., 0., 0., 1.], "VEC2");
     let picture = file.texture(&RgbaImage::from_pixel(1, 1, Rgba([255; 4])));
     let slot = json!({ "index": picture });
     let scene = with(

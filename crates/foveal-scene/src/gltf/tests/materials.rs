@@ -201,6 +201,7 @@ fn samplers_say_whether_there_are_mip_levels() {
 #[test]
 fn index_of_refraction_and_specular_are_read_with_their_textures() {
     let mut file = File::with_triangle();
+    file.attribute("TEXCOORD_0", &[0., 0., 1., 0., 0., 1.], "VEC2");
     file.attribute("TEXCOORD_1", &[0., 0., 1., 0., 0., 1.], "VEC2");
     let picture = file.texture(&checker());
     file.json["extensionsUsed"] = json!(["KHR_materials_ior", "KHR_materials_specular"]);
