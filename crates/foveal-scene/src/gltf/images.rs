@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::document::{Counts, View};
 use super::json::{Obj, cut_name};
+use super::uri::is_data;
 use crate::error::{Flaw, Parsed};
 use crate::{Code, Filter, Sampler, Wrap};
 
@@ -30,7 +31,7 @@ impl ImageDef {
             (None, Some(uri)) => ImageSource::Uri(uri.to_owned()),
             (None, None) => ImageSource::Nowhere,
         };
-        let file_name = uri.filter(|u| !u.starts_with("data:"));
+        let file_name = uri.filter(|u| !is_data(u));
         Ok(Self {
             name: o.name("name")?.or_else(|| file_name.map(cut_name)),
             source,

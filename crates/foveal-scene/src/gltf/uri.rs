@@ -1,5 +1,7 @@
 //! URIs of buffers and images: data URIs are decoded here, paths prepared for the resolver.
 
+use std::borrow::Cow;
+
 use base64::Engine;
 use base64::alphabet::{STANDARD, URL_SAFE};
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
@@ -14,16 +16,30 @@ pub(crate) enum Uri {
     File(String),
 }
 
+/// What follows the scheme of a data URI; schemes may be written in capitals.
+fn after_data(uri: &str) -> Option<&str> {
+    let (scheme, rest) = uri.split_once(':')?;
+    scheme.eq_ignore_ascii_case("data").then_some(rest)
+}
+
+/// Whether a URI holds its bytes itself.
+pub(crate) fn is_data(uri: &str) -> bool {
+    after_data(uri).is_some()
+}
+
 /// Understands a URI; the error is a cause.
 pub(crate) fn parse(uri: &str) -> Result<Uri, String> {
-    if let Some(rest) = uri.strip_prefix("data:") {
+    if let Some(rest) = after_data(uri) {
         let (head, body) = rest
             .split_once(',')
             .ok_or("is a data URI without a comma")?;
-        let bytes = if head.to_ascii_lowercase().ends_with(";base64") {
-            base64(body).ok_or("is a data URI whose base64 is broken")?
+        // RFC 2397: escapes stand before base64.
+        let body: Cow<'_, [u8]> = percent_decode_str(body).into();
+        let last = head.rsplit_once(';').map_or("", |(_, last)| last.trim());
+        let bytes = if last.eq_ignore_ascii_case("base64") {
+            base64(&body).ok_or("is a data URI whose base64 is broken")?
         } else {
-            percent(body)
+            body.into_owned()
         };
         return Ok(Uri::Data(bytes));
     }
@@ -40,28 +56,27 @@ pub(crate) fn parse(uri: &str) -> Result<Uri, String> {
     if uri.is_empty() || uri.contains('\0') {
         return Err("is not a path".to_owned());
     }
-    String::from_utf8(percent(uri))
+    let path: Cow<'_, [u8]> = percent_decode_str(uri).into();
+    String::from_utf8(path.into_owned())
         .map(Uri::File)
         .map_err(|_| "is not UTF-8 after percent-decoding".to_owned())
 }
 
-/// `%41` to `A`; anything that is not an escape stays.
-fn percent(text: &str) -> Vec<u8> {
-    percent_decode_str(text).collect()
-}
-
 /// RFC 4648 with or without padding, in either alphabet.
-fn base64(text: &str) -> Option<Vec<u8>> {
+fn base64(mut text: &[u8]) -> Option<Vec<u8>> {
     let options = GeneralPurposeConfig::new()
         .with_decode_padding_mode(DecodePaddingMode::RequireNone)
         .with_decode_allow_trailing_bits(true);
-    let alphabet = if text.contains(['-', '_']) {
+    let alphabet = if text.contains(&b'-') || text.contains(&b'_') {
         &URL_SAFE
     } else {
         &STANDARD
     };
     let engine = GeneralPurpose::new(alphabet, options);
-    engine.decode(text.trim_end_matches('=')).ok()
+    while let [rest @ .., b'='] = text {
+        text = rest;
+    }
+    engine.decode(text).ok()
 }
 
 #[cfg(test)]
@@ -79,10 +94,10 @@ mod tests {
             ("Zm9vYg", b"foob"),
             ("-_-_", b"\xfb\xff\xbf"),
         ] {
-            assert_eq!(base64(text).as_deref(), Some(bytes), "{text}");
+            assert_eq!(base64(text.as_bytes()).as_deref(), Some(bytes), "{text}");
         }
-        assert_eq!(base64("Zm9vY"), None);
-        assert_eq!(base64("Zm 9"), None);
+        assert_eq!(base64(b"Zm9vY"), None);
+        assert_eq!(base64(b"Zm 9"), None);
     }
 
     #[test]
@@ -102,5 +117,27 @@ mod tests {
             Ok(Uri::Data(b"foo".to_vec()))
         );
         assert_eq!(parse("data:,a%62"), Ok(Uri::Data(b"ab".to_vec())));
+    }
+
+    #[test]
+    fn data_uris_are_read_in_each_way_that_rfc_2397_lets_them_be_written() {
+        for uri in [
+            "data:application/octet-stream;base64,+/8A",
+            "data:application/octet-stream;base64,%2B%2F8A",
+            "data:application/octet-stream;base64,%2b/8A%3D",
+            "DATA:application/octet-stream;base64,+/8A",
+            "Data:;BASE64,+/8A",
+            "data:application/octet-stream; base64,+/8A",
+            "data:text/plain;charset=x;base64 ,+/8A",
+        ] {
+            assert!(is_data(uri), "{uri}");
+            assert_eq!(parse(uri), Ok(Uri::Data(vec![0xFB, 0xFF, 0])), "{uri}");
+        }
+        // A type or parameter of this name is none.
+        for uri in ["data:base64,Zg", "data:a/b;base64=1,Zg"] {
+            assert_eq!(parse(uri), Ok(Uri::Data(b"Zg".to_vec())), "{uri}");
+        }
+        assert!(parse("data:;base64,%2").is_err());
+        assert!(!is_data("data/a.bin") && !is_data("database:a"));
     }
 }
