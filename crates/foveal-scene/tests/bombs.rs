@@ -267,6 +267,9 @@ fn small_files_that_ask_for_much_are_refused_before_anything_is_allocated() {
         json!({ "joints": [0], "inverseBindMatrices": 1 });
         1000
     ]);
+    let node = |skin: usize| json!({ "mesh": 0, "skin": skin });
+    bomb.json["nodes"] = (0..1000).map(node).collect();
+    bomb.json["scenes"][0]["nodes"] = (0..1000).collect();
     bomb.refused(Some(Limit::Expansion));
     assert_small("skins");
 

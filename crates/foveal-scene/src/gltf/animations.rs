@@ -21,64 +21,69 @@ struct SamplerDef {
     interpolation: Interpolation,
 }
 
+impl SamplerDef {
+    fn parse(o: Obj<'_>, counts: &Counts) -> Parsed<Self> {
+        Ok(Self {
+            input: o.need("input", o.index("input", counts.accessors)?)?,
+            output: o.need("output", o.index("output", counts.accessors)?)?,
+            interpolation: match o.string("interpolation")? {
+                None | Some("LINEAR") => Interpolation::Linear,
+                Some("STEP") => Interpolation::Step,
+                Some("CUBICSPLINE") => Interpolation::CubicSpline,
+                Some(other) => {
+                    let cause = format!("\"{other}\" is not an interpolation");
+                    return Err(Flaw::new(Code::ValueUnknown, cause).under("interpolation"));
+                }
+            },
+        })
+    }
+}
+
 struct ChannelDef {
     sampler: u32,
-    /// `None` without a node; or why it cannot be played.
-    target: Result<Option<Pointed>, Flaw>,
+    /// `None` without a node.
+    target: Option<Pointed>,
+}
+
+impl ChannelDef {
+    fn parse(o: Obj<'_>, samplers: usize, root: &Value, counts: &Counts) -> Parsed<Self> {
+        let target = o.need("target", o.object("target")?)?;
+        Ok(Self {
+            sampler: o.need("sampler", o.index("sampler", samplers)?)?,
+            target: parse_target(target, root, counts).map_err(|e| e.under("target"))?,
+        })
+    }
 }
 
 /// An animation as the file has it.
+#[derive(Default)]
 pub(crate) struct AnimationDef {
     name: Option<String>,
-    samplers: Vec<SamplerDef>,
-    channels: Vec<ChannelDef>,
+    /// Or why they cannot be used, as of channels.
+    samplers: Vec<Parsed<SamplerDef>>,
+    channels: Vec<Parsed<ChannelDef>>,
 }
 
 impl AnimationDef {
     /// `root` is the whole file, into which pointers lead.
     pub(crate) fn parse(o: Obj<'_>, root: &Value, counts: &Counts) -> Parsed<Self> {
-        let samplers = o.objects("samplers", |s| {
-            Ok(SamplerDef {
-                input: s.need("input", s.index("input", counts.accessors)?)?,
-                output: s.need("output", s.index("output", counts.accessors)?)?,
-                interpolation: match s.string("interpolation")? {
-                    None | Some("LINEAR") => Interpolation::Linear,
-                    Some("STEP") => Interpolation::Step,
-                    Some("CUBICSPLINE") => Interpolation::CubicSpline,
-                    Some(other) => {
-                        return Err(Flaw::new(
-                            Code::ValueUnknown,
-                            format!("\"{other}\" is not an interpolation"),
-                        )
-                        .under("interpolation"));
-                    }
-                },
-            })
-        })?;
-        let channels = o.objects("channels", |c| {
-            let target = c.need("target", c.object("target")?)?;
-            let within = |e: Flaw| e.under("target");
-            Ok(ChannelDef {
-                sampler: c.need("sampler", c.index("sampler", samplers.len())?)?,
-                target: {
-                    let node = target.index("node", counts.nodes).map_err(within)?;
-                    let path = target.string("path").map_err(within)?;
-                    let path = target.need("path", path).map_err(within)?;
-                    parse_target(path, node, target, root, counts).map_err(within)
-                },
-            })
-        })?;
+        let sampler = |value| Obj::of(value).and_then(|o| SamplerDef::parse(o, counts));
+        let samplers = o.each("samplers", |value| Ok(sampler(value)))?;
+        let channel = |value| {
+            let found = Obj::of(value);
+            found.and_then(|o| ChannelDef::parse(o, samplers.len(), root, counts))
+        };
         Ok(Self {
             name: o.name("name")?,
+            channels: o.each("channels", |value| Ok(channel(value)))?,
             samplers,
-            channels,
         })
     }
 
     /// What its channels move.
     pub(crate) fn targets(&self) -> impl Iterator<Item = &Pointed> {
         let targets = self.channels.iter();
-        targets.filter_map(|channel| channel.target.as_ref().ok()?.as_ref())
+        targets.filter_map(|channel| channel.as_ref().ok()?.target.as_ref())
     }
 
     /// The key frames. `weights_of` gives the number of morph targets of a node's mesh.
@@ -91,7 +96,8 @@ impl AnimationDef {
         let mut channels: Vec<Channel> = Vec::new();
         for (i, def) in self.channels.iter().enumerate() {
             let place = format!("channels[{i}]");
-            match self.read_channel(def, reader, &weights_of) {
+            let def = def.as_ref().map_err(Flaw::clone);
+            match def.and_then(|def| self.read_channel(def, reader, &weights_of)) {
                 Ok(Some(channel)) => {
                     let twin =
                         |c: &Channel| c.number == channel.number && c.target.meets(channel.target);
@@ -123,13 +129,18 @@ impl AnimationDef {
         reader: Reader<'_>,
         weights_of: impl Fn(u32) -> usize,
     ) -> Parsed<Option<Channel>> {
-        let pointed = def.target.as_ref().map_err(Flaw::clone)?;
         // The specification lets channels without a node be ignored.
-        let Some(&Pointed { number, target, .. }) = pointed.as_ref() else {
+        let Some(&Pointed { number, target, .. }) = def.target.as_ref() else {
             return Ok(None);
         };
         let place = |e: Flaw, part: &str| e.under(format_args!("sampler {} {part}", def.sampler));
-        let sampler = &self.samplers[def.sampler as usize];
+        let sampler = self.samplers[def.sampler as usize]
+            .as_ref()
+            .map_err(|flaw| {
+                let mut flaw = flaw.clone();
+                let part = std::mem::take(&mut flaw.place);
+                flaw.under(format!("sampler {} {part}", def.sampler).trim_end())
+            })?;
         let numbers = |a: u32| reader.accessor(a).count as u64 * reader.accessor(a).width as u64;
         let keys = numbers(sampler.input).saturating_add(numbers(sampler.output));
         let budget = &reader.buffers.budget;
@@ -193,13 +204,9 @@ impl AnimationDef {
 }
 
 /// What a channel's target object points at.
-fn parse_target(
-    path: &str,
-    node: Option<u32>,
-    target: Obj<'_>,
-    root: &Value,
-    counts: &Counts,
-) -> Parsed<Option<Pointed>> {
+fn parse_target(target: Obj<'_>, root: &Value, counts: &Counts) -> Parsed<Option<Pointed>> {
+    let node = target.index("node", counts.nodes)?;
+    let path = target.need("path", target.string("path")?)?;
     let property = match path {
         "translation" => Target::Translation,
         "rotation" => Target::Rotation,

@@ -139,7 +139,18 @@ impl Document {
             }
         }
         let mut materials = root.objects("materials", |o| MaterialDef::parse(o, &counts))?;
-        let animations = root.objects("animations", |o| AnimationDef::parse(o, file, &counts))?;
+        let animations = {
+            let mut numbers = 0..;
+            root.each("animations", |value| {
+                let number: usize = numbers.next().unwrap_or(0);
+                let def = Obj::of(value).and_then(|o| AnimationDef::parse(o, file, &counts));
+                Ok(def.unwrap_or_else(|flaw| {
+                    let note = flaw.under(format_args!("animations[{number}]")).warning();
+                    warn.push(note.and("this animation is not played"));
+                    AnimationDef::default()
+                }))
+            })?
+        };
         for pointed in animations.iter().flat_map(AnimationDef::targets) {
             if let Target::Material(part) = pointed.target {
                 materials[pointed.number as usize].animate(part);
@@ -155,7 +166,7 @@ impl Document {
             textures,
             materials,
             meshes,
-            skins: root.objects("skins", |o| SkinDef::parse(o, &counts))?,
+            skins: root.objects("skins", |o| Ok(SkinDef::parse(o, &counts)))?,
             cameras: root.objects("cameras", CameraDef::parse)?,
             animations,
             lights: light_defs,

@@ -212,7 +212,7 @@ fn build(
             "the scene shows no triangles, lines or points",
         ));
     }
-    let mut rig = rigging::Rigging::begin(reader, &hierarchy, options, warn)?;
+    let mut rig = rigging::Rigging::begin(reader, &hierarchy, &shown, options, warn)?;
     rig.give_own_meshes(&mut shown, &shapes, &mut scene, reader, options, warn)?;
     scene.timings.geometry_ms = watch.lap_ms();
 

@@ -13,10 +13,11 @@ use super::nodes::Hierarchy;
 use super::objects::Shown;
 use super::parts::bytes_of_stroke;
 use super::reader::Reader;
+use super::unused::NOT_SHOWN;
 use crate::cloud::Cloud;
 use crate::error::{Flaw, Parsed};
 use crate::pose::{
-    Binding, Deformer, Local, MaterialPart, MaterialState, Node, Rig, RigData, Shape, Target,
+    Binding, Deformer, Local, MaterialPart, MaterialState, Node, Rig, RigData, Shape, Skin, Target,
     world_from_nodes,
 };
 use crate::{Code, LoadOptions, Material, Scene, Warning};
@@ -32,10 +33,11 @@ pub(crate) struct Rigging {
 }
 
 impl Rigging {
-    /// Reads animations and skins.
+    /// Reads animations, and the skins of the shown nodes.
     pub(crate) fn begin(
         reader: Reader<'_>,
         hierarchy: &Hierarchy,
+        shown: &[Shown],
         options: &LoadOptions,
         warn: &mut Vec<Warning>,
     ) -> Parsed<Self> {
@@ -69,10 +71,17 @@ impl Rigging {
             parallel: options.parallel,
             ..RigData::default()
         };
+        let skins = shown.iter().map(|s| document.nodes[s.node as usize].skin);
+        let needed: HashSet<u32> = skins.flatten().collect();
         for (i, def) in document.skins.iter().enumerate() {
-            let skin = def
-                .read(reader)
-                .map_err(|e| e.under(format_args!("skins[{i}]")))?;
+            let place = |flaw: Flaw| flaw.under(format_args!("skins[{i}]"));
+            let skin = if needed.contains(&(i as u32)) {
+                def.read(reader).map_err(place)?
+            } else {
+                let check = def.check(reader).map_err(place);
+                warn.extend(check.err().map(|flaw| flaw.warning().and(NOT_SHOWN)));
+                Skin::default()
+            };
             data.skins.push(skin);
         }
         let moving = moving_nodes(&mut data, document, warn);

@@ -16,7 +16,8 @@ use super::wanted::Wanted;
 use crate::error::{Flaw, Limit, Parsed, amount};
 use crate::{Code, LoadOptions, Scene, Warning};
 
-const CONSEQUENCE: &str = "nothing shown uses it";
+/// What follows from a fault here.
+pub(super) const NOT_SHOWN: &str = "nothing shown uses it";
 
 /// Reads meshes of no shown node and pictures of no material.
 pub(crate) fn check(
@@ -35,7 +36,7 @@ pub(crate) fn check(
         if let Err(flaw) = check_mesh(mesh, reader, options, &mut notes) {
             notes.push(flaw.warning());
         }
-        warn.extend(notes.into_iter().map(|note| note.and(CONSEQUENCE)));
+        warn.extend(notes.into_iter().map(|note| note.and(NOT_SHOWN)));
     }
     let around = document.image_light.iter().flatten();
     let used: HashSet<u32> = (wanted.images())
@@ -45,7 +46,7 @@ pub(crate) fn check(
         if let Err(flaw) = check_image(image, reader, resolver, options) {
             let label = document.images[image as usize].label(image as usize);
             let place = format!("images[{image}] ({label})");
-            warn.push(flaw.warning().at(place).and(CONSEQUENCE));
+            warn.push(flaw.warning().at(place).and(NOT_SHOWN));
         }
     }
 }

@@ -4,8 +4,8 @@ use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 
 use crate::Vertex;
 
-/// Joints of a skin.
-#[derive(Clone, Debug)]
+/// Joints of a skin; none of one that nothing shown needs.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Skin {
     /// Node indices.
     pub(crate) joints: Vec<u32>,

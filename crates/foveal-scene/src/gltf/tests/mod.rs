@@ -12,6 +12,7 @@ mod materials;
 mod motion;
 mod nodes;
 mod pointers;
+mod unneeded;
 
 pub(super) use foveal_seeds::File;
 
