@@ -202,8 +202,12 @@ fn build(
     let mut elements_left = options.max_instances;
     for one in &mut shown {
         let instancing = document.nodes[one.node as usize].instancing;
-        one.elements = objects::elements(instancing, reader, &mut elements_left, options)
-            .map_err(|e| objects::in_instancing(e, one.node))?;
+        let mut notes = Vec::new();
+        let place = |flaw: Flaw| objects::in_instancing(flaw, one.node);
+        let left = &mut elements_left;
+        let elements = objects::elements(instancing, reader, left, options, &mut notes);
+        one.elements = elements.map_err(place)?;
+        warn.extend(notes.into_iter().map(|note| place(note).warning()));
     }
     let shapes = parts::drop_empty_meshes(&mut shown, shapes, &mut scene);
     if shown.is_empty() {

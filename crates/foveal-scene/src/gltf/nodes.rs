@@ -15,15 +15,16 @@ pub(crate) struct Instancing {
     pub(crate) translation: Option<u32>,
     pub(crate) rotation: Option<u32>,
     pub(crate) scale: Option<u32>,
-    /// Another attribute's accessor, for the count.
+    /// Another attribute's accessor, for the count where none of these is there.
     pub(crate) other: Option<u32>,
 }
 
 impl Instancing {
-    /// All that there are.
+    /// Those that say how many elements there are.
     pub(crate) fn accessors(self) -> impl Iterator<Item = u32> {
-        let all = [self.translation, self.rotation, self.scale, self.other];
-        all.into_iter().flatten()
+        let places = [self.translation, self.rotation, self.scale];
+        let other = self.other.filter(|_| places == [None; 3]);
+        places.into_iter().chain([other]).flatten()
     }
 }
 

@@ -35,18 +35,19 @@ pub(crate) struct Shown {
     pub(crate) elements: Vec<Mat4>,
 }
 
-/// How many elements there are; `None` without instancing.
-fn element_count(instancing: Option<Instancing>, reader: Reader<'_>) -> Option<usize> {
-    let accessors = instancing?.accessors();
-    let counts = accessors.map(|a| reader.accessor(a).count);
-    counts.min()
+/// How many elements there are, by the shortest attribute and by the longest; `None` without
+/// instancing.
+fn element_counts(instancing: Option<Instancing>, reader: Reader<'_>) -> Option<(usize, usize)> {
+    let instancing = instancing?;
+    let counts = || instancing.accessors().map(|a| reader.accessor(a).count);
+    counts().min().zip(counts().max())
 }
 
 /// Counts the memory of all elements before any is read.
 pub(crate) fn check_elements(shown: &[Shown], reader: Reader<'_>) -> Parsed<()> {
     let bytes = shown.iter().map(|one| {
         let node = &reader.document.nodes[one.node as usize];
-        let elements = element_count(node.instancing, reader).unwrap_or(0) as u64;
+        let elements = element_counts(node.instancing, reader).map_or(0, |(least, _)| least as u64);
         let mesh = node
             .mesh
             .and_then(|m| reader.document.meshes[m as usize].name.as_ref());
@@ -67,19 +68,24 @@ pub(crate) fn in_instancing(flaw: Flaw, node: u32) -> Flaw {
         .under(format_args!("nodes[{node}]"))
 }
 
-/// Elements of EXT_mesh_gpu_instancing; one identity without.
+/// Elements of EXT_mesh_gpu_instancing; one identity without. `notes` takes what is odd about them.
 pub(crate) fn elements(
     instancing: Option<Instancing>,
     reader: Reader<'_>,
     left: &mut u64,
     options: &LoadOptions,
+    notes: &mut Vec<Flaw>,
 ) -> Parsed<Vec<Mat4>> {
     let Some(found) = instancing else {
         return Ok(vec![Mat4::IDENTITY]);
     };
-    let Some(count) = element_count(instancing, reader) else {
+    let Some((count, most)) = element_counts(instancing, reader) else {
         return Ok(vec![Mat4::IDENTITY]);
     };
+    if count < most {
+        let text = format!("have {count} to {most} elements; {count} instances are made");
+        notes.push(Flaw::new(Code::AccessorCount, text));
+    }
     let mut used = found.accessors();
     if count > MAX_UNBACKED_INSTANCES && used.all(|a| reader.accessor(a).unbacked() > 0) {
         return Err(Flaw::too_large(format!(

@@ -71,6 +71,31 @@ fn gpu_instancing_makes_one_object_per_element() {
 }
 
 #[test]
+fn instancing_attributes_of_different_lengths_make_the_fewest_elements_and_a_warning() {
+    let mut file = File::with_triangle();
+    let three = file.floats(&[0., 0., 0., 10., 0., 0., 20., 0., 0.], "VEC3");
+    let two = file.floats(&[1.; 6], "VEC3");
+    let one = file.floats(&[7.], "SCALAR");
+    for (attributes, elements, warning) in [
+        (
+            json!({ "TRANSLATION": three, "SCALE": two }),
+            2,
+            "nodes[0].extensions.EXT_mesh_gpu_instancing.attributes: have 2 to 3 elements; \
+             2 instances are made",
+        ),
+        // What says nothing of places is left alone.
+        (json!({ "TRANSLATION": three, "_ID": one }), 3, ""),
+        (json!({ "_ID": two }), 2, ""),
+    ] {
+        let extension = json!({ "EXT_mesh_gpu_instancing": { "attributes": attributes } });
+        file.node()["extensions"] = extension;
+        let scene = file.load();
+        assert_eq!(scene.objects.len(), elements, "{attributes}");
+        assert_eq!(warnings(&scene), warning);
+    }
+}
+
+#[test]
 fn cameras_lose_far_plane_and_scale() {
     let mut file = File::with_triangle();
     file.json["cameras"] = json!([
