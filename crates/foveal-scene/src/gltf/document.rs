@@ -269,7 +269,10 @@ fn parse_buffer(o: Obj<'_>) -> Parsed<BufferDef> {
         uri: o.string("uri")?.map(str::to_owned),
         len,
         fallback: match meshopt_extension(o)? {
-            Some((e, _)) => e.boolean("fallback")?.unwrap_or(false),
+            Some((e, name)) => e
+                .boolean("fallback")
+                .map_err(|e| e.under(format_args!("extensions.{name}")))?
+                .unwrap_or(false),
             None => false,
         },
     })
@@ -296,13 +299,14 @@ fn parse_view(o: Obj<'_>, buffers: &[BufferDef]) -> Parsed<View> {
             format!("ends beyond buffers[{buffer}], which has {available} bytes"),
         ));
     }
+    // The specification has none below 4; exporters have written the packed size of small elements.
     let stride = o.uint("byteStride")?;
     if let Some(stride) = stride
         && !(1..=252).contains(&stride)
     {
         return Err(Flaw::new(
             Code::ValueOutOfRange,
-            format!("is {stride}, outside 4 to 252"),
+            format!("is {stride}, outside 1 to 252"),
         )
         .under("byteStride"));
     }

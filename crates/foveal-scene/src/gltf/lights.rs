@@ -30,7 +30,10 @@ fn parse_light(o: Obj<'_>) -> Parsed<Light> {
             let angles = o.object("spot")?;
             let angle = |key, default| -> Parsed<f32> {
                 match angles {
-                    Some(angles) => Ok(angles.float(key)?.unwrap_or(default)),
+                    Some(angles) => {
+                        let angle = angles.float(key).map_err(|e| e.under("spot"))?;
+                        Ok(angle.unwrap_or(default))
+                    }
                     None => Ok(default),
                 }
             };

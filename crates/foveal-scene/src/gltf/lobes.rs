@@ -87,7 +87,8 @@ fn part(o: Obj<'_>, key: &str) -> Parsed<f32> {
 
 fn clearcoat(o: Obj<'_>, counts: &Counts) -> Parsed<Clearcoat> {
     let normal = o.object("clearcoatNormalTexture")?;
-    let scale = normal.map(|normal| normal.float("scale")).transpose()?;
+    let scale = normal.map(|normal| normal.float("scale")).transpose();
+    let scale = scale.map_err(|e| e.under("clearcoatNormalTexture"))?;
     Ok(Clearcoat {
         factor: part(o, "clearcoatFactor")?,
         texture: texture(o, "clearcoatTexture", counts)?,

@@ -93,11 +93,13 @@ impl MaterialDef {
             base_color = slot(old, "diffuseTexture").map_err(within)?;
         }
         if let Some(normal) = o.object("normalTexture")? {
-            material.normal_scale = normal.float("scale")?.unwrap_or(1.0);
+            let scale = normal.float("scale").map_err(|e| e.under("normalTexture"));
+            material.normal_scale = scale?.unwrap_or(1.0);
         }
         if let Some(occlusion) = o.object("occlusionTexture")? {
-            material.occlusion_strength =
-                occlusion.float("strength")?.unwrap_or(1.0).clamp(0.0, 1.0);
+            let strength = occlusion.float("strength");
+            let strength = strength.map_err(|e| e.under("occlusionTexture"))?;
+            material.occlusion_strength = strength.unwrap_or(1.0).clamp(0.0, 1.0);
         }
         read_specular(&mut material, o, counts)?;
         if !material.unlit {

@@ -82,7 +82,10 @@ impl NodeDef {
             None => None,
         };
         let visible = match o.extension("KHR_node_visibility")? {
-            Some(e) => e.boolean("visible")?.unwrap_or(true),
+            Some(e) => e
+                .boolean("visible")
+                .map_err(|e| e.under("extensions.KHR_node_visibility"))?
+                .unwrap_or(true),
             None => true,
         };
         // `extras` belongs to the author: of another type than expected it is not ours to judge.

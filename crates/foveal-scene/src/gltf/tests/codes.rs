@@ -1,8 +1,8 @@
-//! Codes of warnings and errors.
+//! Codes and places of warnings and errors.
 
 use serde_json::json;
 
-use super::{File, Loads};
+use super::{File, Loads, warnings};
 use crate::{Code, LoadOptions, load_bytes};
 
 type Change = fn(&mut File);
@@ -53,6 +53,63 @@ fn errors_have_the_code_of_their_cause() {
     let none = |_: &str| Err("no files".into());
     let error = load_bytes(b"text", "a.glb", &LoadOptions::default(), &none).unwrap_err();
     assert_eq!(error.code(), Code::NotGltf, "{error}");
+}
+
+#[test]
+fn errors_name_the_whole_place() {
+    let cases: &[(&str, Change)] = &[
+        ("materials[0].normalTexture.scale: is a string", |file| {
+            file.material(json!({ "normalTexture": { "index": 0, "scale": "x" } }));
+        }),
+        (
+            "materials[0].occlusionTexture.strength: is a string",
+            |file| {
+                file.material(json!({ "occlusionTexture": { "index": 0, "strength": "x" } }));
+            },
+        ),
+        (
+            "materials[0].extensions.KHR_materials_clearcoat.clearcoatNormalTexture.scale: is a string",
+            |file| {
+                let normal = json!({ "index": 0, "scale": "x" });
+                let coat = json!({ "clearcoatFactor": 1, "clearcoatNormalTexture": normal });
+                file.material(json!({ "extensions": { "KHR_materials_clearcoat": coat } }));
+            },
+        ),
+        (
+            "nodes[0].extensions.KHR_node_visibility.visible: is a string",
+            |file| {
+                file.node()["extensions"] = json!({ "KHR_node_visibility": { "visible": "x" } });
+            },
+        ),
+        (
+            "buffers[1].extensions.EXT_meshopt_compression.fallback: is a string",
+            |file| {
+                let extension = json!({ "EXT_meshopt_compression": { "fallback": "x" } });
+                let buffer = json!({ "byteLength": 1, "extensions": extension });
+                file.more_buffers.push(buffer);
+            },
+        ),
+        (
+            "bufferViews[0].byteStride: is 0, outside 1 to 252",
+            |file| {
+                file.json["bufferViews"][0]["byteStride"] = json!(0);
+            },
+        ),
+    ];
+    for (place, change) in cases {
+        let mut file = File::with_triangle();
+        file.texture(&image::RgbaImage::new(1, 1));
+        change(&mut file);
+        let error = file.refusal();
+        assert!(error.contains(&format!("broken at {place}")), "{error}");
+    }
+    let mut file = File::with_triangle();
+    let spot = json!({ "type": "spot", "spot": { "innerConeAngle": "x" } });
+    file.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [spot] } });
+    file.node()["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+    let text = warnings(&file.load());
+    let place = "extensions.KHR_lights_punctual.lights[0].spot.innerConeAngle: is a string";
+    assert!(text.contains(place), "{text}");
 }
 
 #[test]
