@@ -116,6 +116,8 @@ pub(crate) struct MeshDef {
     /// Per primitive, (variant, material).
     variants: Vec<Vec<(u32, u32)>>,
     pub(crate) weights: Vec<f32>,
+    /// The most morph targets that one of its primitives has.
+    pub(crate) target_count: usize,
 }
 
 impl MeshDef {
@@ -129,6 +131,11 @@ impl MeshDef {
         })?;
         Ok(Self {
             name: o.name("name")?,
+            target_count: primitives
+                .iter()
+                .map(|p| p.targets.len())
+                .max()
+                .unwrap_or(0),
             primitives,
             materials,
             variants,

@@ -353,14 +353,8 @@ fn moving_nodes(data: &mut RigData, document: &Document, warn: &mut Vec<Warning>
 
 /// Number of morph targets of a node's mesh.
 fn target_count(document: &Document, node: u32) -> usize {
-    document.nodes[node as usize].mesh.map_or(0, |mesh| {
-        let primitives = &document.meshes[mesh as usize].primitives;
-        primitives
-            .iter()
-            .map(|p| p.targets.len())
-            .max()
-            .unwrap_or(0)
-    })
+    let mesh = document.nodes[node as usize].mesh;
+    mesh.map_or(0, |mesh| document.meshes[mesh as usize].target_count)
 }
 
 /// The node's own weights, else its mesh's, else zeros.

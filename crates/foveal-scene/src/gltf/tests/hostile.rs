@@ -298,6 +298,29 @@ fn sets_of_texture_coordinates_take_time_in_proportion_to_their_number() {
 }
 
 #[test]
+fn channels_of_weights_do_not_search_the_primitives_of_their_mesh() {
+    let mut file = File::with_triangle();
+    let many = 50_000;
+    file.push(
+        "meshes",
+        json!({ "primitives": vec![json!({ "attributes": {} }); many] }),
+    );
+    file.push("nodes", json!({ "mesh": 1 }));
+    let times = file.floats(&[0., 1.], "SCALAR");
+    let channel = json!({ "sampler": 0, "target": { "node": 1, "path": "weights" } });
+    file.push(
+        "animations",
+        json!({
+            "samplers": [{ "input": times, "output": times }],
+            "channels": vec![channel; many],
+        }),
+    );
+    let text = warnings(&file.load());
+    let note = "channels[0]: moves the weights of a node without such morph targets";
+    assert!(text.contains(note), "{text}");
+}
+
+#[test]
 fn the_flag_that_an_error_names_allows_what_no_file_stores() {
     // Beyond the limits of elements without stored values and of numbers.
     for targets in [20, 30] {
