@@ -56,7 +56,8 @@ impl Camera {
         } else {
             lens.perspective_terms(to_eye, view.validity_radius_m)
         };
-        let [_, _, bottom, top] = lens.extents;
+        // The view's own, not that of the widened frustum: thresholds of size go by it.
+        let [_, _, bottom, top] = eye.projection.extents();
         Ok(Self {
             eye: eye.position().into(),
             rows: terms.rows,

@@ -198,7 +198,8 @@ impl Eye {
 
     /// An eye at `position` that looks at `target`, both world metres; along -z if they are equal.
     /// `up` need not be perpendicular to the view direction; if it is parallel to it, within
-    /// rounding, another axis is taken.
+    /// rounding, another axis is taken. A pose that is not finite is refused when it is used
+    /// ([`Error::NotFinite`](crate::Error::NotFinite)).
     #[must_use]
     pub fn look_at(
         position: impl Into<[f64; 3]>,
@@ -207,7 +208,15 @@ impl Eye {
         projection: Projection,
     ) -> Self {
         let [position, target, up] = [position.into(), target.into(), up.into()].map(DVec3::from);
-        let back = (position - target).try_normalize().unwrap_or(DVec3::Z);
+        // Scaled first: squares of far targets would overflow. What is not finite stays so, and is
+        // refused as a pose.
+        let way = position - target;
+        let way = way / way.abs().max_element().max(f64::MIN_POSITIVE);
+        let back = if way.is_finite() && up.is_finite() {
+            way.try_normalize().unwrap_or(DVec3::Z)
+        } else {
+            DVec3::NAN
+        };
         let right = up.cross(back);
         // The product of parallel vectors is rounding alone.
         let is_known = right.length_squared() > LEAST_SINE * LEAST_SINE * up.length_squared();

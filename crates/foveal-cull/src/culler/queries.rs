@@ -55,8 +55,8 @@ impl Culler {
     /// from.
     ///
     /// Results equal those of [`query`](Self::query) on the same boxes, except where a group as a
-    /// whole is occluded and the rectangle of one of its objects, which is larger than need be, is
-    /// not. Objects of an occluded group are called occluded even if they lie outside the frustum
+    /// whole is occluded or outside and the rectangle of one of its objects, which is larger than need
+    /// be, is not. Objects of an occluded group are called occluded even if they lie outside the frustum
     /// or are small. Cost grows with the groups that are neither hidden nor outside: 0.06 ms for
     /// 26,894 objects of a market, of which 1,389 are visible.
     ///

@@ -91,7 +91,11 @@ fn fill(quads: impl Iterator<Item = [Vec3; 4]>, size: Vec3) -> f32 {
         .sum();
     let fill = surface / size.dot(Vec3::new(size.y, size.z, size.x));
     // Too small or too large for `f32`: not known.
-    if fill.is_finite() { fill.min(1.0) } else { 1.0 }
+    if fill.is_finite() && surface > 0.0 {
+        fill.min(1.0)
+    } else {
+        1.0
+    }
 }
 
 /// The part of all edges of a cluster's quads, by length, where the mesh ends or bends. 1 without

@@ -76,7 +76,7 @@ impl<'a> Query<'a> {
             grow: ROUNDING * from_origin.length() as f32,
             hiz: frame.occlusion.then(|| Hiz::new(buffer)).flatten(),
         };
-        let t = f64::from(frame.occludee_size_threshold);
+        let t = f64::from(frame.occludee_size_threshold.max(0.0));
         let axis_planes = (camera.radius == 0.0)
             .then(|| AxisPlanes::new(camera, origin, screen.width, screen.height))
             .flatten();

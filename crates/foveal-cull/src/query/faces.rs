@@ -155,8 +155,14 @@ impl<W: Sixteen> Faces<W> {
         while open != 0 && seen != 0 {
             let i = open.trailing_zeros() as usize % 16;
             open &= open - 1;
-            // Only the sign counts. Scaled, so that nothing above zero becomes the lowest code.
-            let codes = block_codes(l, values[i], right[i], down[i], 1e6);
+            // Only the sign counts. Scaled by the largest term, so that nothing above its rounding
+            // becomes the lowest code.
+            let span = BLOCK as f32 * (right[i].abs() + down[i].abs());
+            let scale = 1.0 / (values[i].abs() + span);
+            if !scale.is_finite() {
+                continue;
+            }
+            let codes = block_codes(l, values[i], right[i], down[i], scale);
             seen &= codes.gt(l.depth(i16::MIN));
         }
         seen != 0

@@ -255,7 +255,8 @@ impl Kernel for Select<'_> {
         let samples_per_quad = pixels_per_quad * (SAMPLES * SAMPLES) as f32;
         let stats = &mut part.stats;
         let planes = instance_planes(camera, f64::from(width), f64::from(height));
-        let small = f64::from(size_threshold) * f64::from(size_threshold) * camera.tan_half_fov_y;
+        let threshold = f64::from(size_threshold.max(0.0));
+        let small = threshold * threshold * camera.tan_half_fov_y;
         let begun = usize::from(first_group > 0);
         // Meshes lie anywhere in memory: only those that may be on the screen are fetched, before
         // their turn comes.
