@@ -59,8 +59,8 @@ fn scattered(to_light: Vec3, intensity: f32) -> f32 {
 
 #[test]
 fn lights_without_a_range_shine_as_far_as_an_exposure_shows() {
-    let (scene, camera) = lit_square(16.0, 1.0, 1.0);
-    let expected = scattered(Vec3::Z * 16.0, 1.0);
+    let (scene, camera) = lit_square(48.0, 1.0, 1.0);
+    let expected = scattered(Vec3::Z * 48.0, 1.0);
     for mode in [Shading::Full, Shading::Coarse] {
         let exposed = |stops: f32| {
             settings(stops).with(|s| {
@@ -70,7 +70,7 @@ fn lights_without_a_range_shine_as_far_as_an_exposure_shows() {
         };
         let mut film = Film::new(&scene, &exposed(0.0));
         film.draw(&camera);
-        // Below what a picture of 8 bits shows.
+        // Far below what a picture of 8 bits shows.
         assert!(radiance(&film).iter().all(|&r| r == 0.0));
         let set = |film: &mut Film, stops: f32| {
             let settings = exposed(stops);
@@ -94,10 +94,22 @@ fn lights_without_a_range_shine_as_far_as_an_exposure_shows() {
 }
 
 #[test]
+fn light_that_one_lamp_alone_hardly_shows_is_not_cut_off() {
+    // White scatters 1 / 800 of it; highlights and many such lamps show.
+    let (scene, camera) = lit_square(16.0, 1.0, 1.0);
+    let mut film = Film::new(&scene, &settings(0.0));
+    film.draw(&camera);
+    let expected = scattered(Vec3::Z * 16.0, 1.0);
+    for found in radiance(&film) {
+        assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+    }
+}
+
+#[test]
 fn exposures_up_to_0_change_no_range() {
     let (scene, _) = lit_square(16.0, 3.0, 1.0);
     let at = |stops: f32| super::LightUniform::all(&scene.lights, stops)[0];
-    assert_eq!(at(0.0).range, (3.0f32 * 256.0).sqrt());
+    assert_eq!(at(0.0).range, (3.0f32 * 2048.0).sqrt());
     assert_eq!(at(-8.0), at(0.0));
     assert_eq!(at(2.0).range, 2.0 * at(0.0).range);
     // The farthest that half-precision radiance holds.

@@ -6,11 +6,15 @@ use foveal_scene::{Light, LightKind};
 /// More lights would need more workgroups in one dispatch than devices give, many times over.
 pub(crate) const MAX_LIGHTS: usize = 16_384;
 
-/// Irradiance at which a light without a range of its own ends, at an exposure in stops: less than
-/// a picture shows. Half-precision radiance holds no more than 16 stops.
+/// Irradiance at which a light without a range of its own ends, at an exposure in stops: what a
+/// hundred such lights add to a surface, or one to a highlight, is still seen far above it.
+/// Half-precision radiance holds no more than 16 stops.
 fn faintest(exposure_stops: f32) -> f32 {
-    (-8.0 - exposure_stops.clamp(0.0, 16.0)).exp2()
+    (-11.0 - exposure_stops.clamp(0.0, 16.0)).exp2()
 }
+
+/// Part of the range of such a light beyond which it adds less than 2^-8 by itself.
+const MOSTLY_SEEN: f32 = 0.353_553_4;
 
 /// Mirrors `Light` in `shared/light.wgsl`, where the fields are explained.
 #[repr(C)]
@@ -25,7 +29,7 @@ pub(crate) struct LightUniform {
     pub(crate) cone_cos: f32,
     pub(crate) cone_sin: f32,
     pub(crate) kind: u32,
-    pub(crate) reserved: f32,
+    pub(crate) seen_m: f32,
 }
 
 /// What precedes the lights in their table: mirrors the head of `Lights` in `shared/light.wgsl`.
@@ -69,6 +73,11 @@ impl LightUniform {
         // An infinite light would be in every cluster: it ends where it has become invisible.
         let range = (light.range_m.filter(|range| range.is_finite()))
             .unwrap_or_else(|| (radiant.max_element() / faintest).max(0.0).sqrt());
+        let seen = if light.range_m.is_some_and(f32::is_finite) {
+            1.0
+        } else {
+            MOSTLY_SEEN
+        };
         let (kind, spot_scale, spot_offset, cone) = match light.kind {
             LightKind::Directional => (0, 0.0, 1.0, (-1.0, 0.0)),
             LightKind::Point => (1, 0.0, 1.0, (-1.0, 0.0)),
@@ -96,7 +105,7 @@ impl LightUniform {
             cone_cos: cone.0,
             cone_sin: cone.1,
             kind,
-            reserved: 0.0,
+            seen_m: seen * range.max(1e-4),
         }
     }
 }

@@ -151,6 +151,45 @@ fn a_floor_does_not_shade_itself() {
 }
 
 #[test]
+fn a_bare_wall_does_not_shade_itself_wherever_it_faces_a_lamp() {
+    for away in [
+        Vec3::NEG_Z,
+        Vec3::new(1.0, 0.0, -1.0),
+        Vec3::new(1.0, 1.0, -1.0),
+    ] {
+        let away = away.normalize();
+        let [across, up] = [
+            away.cross(Vec3::Y).normalize(),
+            away.any_orthonormal_vector(),
+        ];
+        let up = up
+            .reject_from(across)
+            .try_normalize()
+            .unwrap_or(across.cross(away));
+        let at = |x: f32, y: f32| 3.0 * away + x * across + y * up;
+        let mut scene = bare();
+        let corners = [(-1.5, -1.5), (1.5, -1.5), (1.5, 1.5), (-1.5, 1.5)];
+        add(&mut scene, [flat(corners.map(|(x, y)| at(x, y)))]);
+        scene.lights.push(lamp(Vec3::ZERO, 20.0));
+        let camera = Camera::look_at(-0.5 * away, at(0.0, 0.0), up, 0.9);
+        for shadows in [Shadows::Hard, Shadows::Soft, Shadows::Contact] {
+            let settings = shadowed(shadows).with(|s| {
+                s.picture.width = 320;
+                s.picture.height = 320;
+            });
+            let renderer = rendered(&scene, &camera, &settings);
+            let (lookup, light) = (lookup(&renderer), renderer.lights().1[0]);
+            for (i, j) in (-28..29).flat_map(|i| (-28..29).map(move |j| (i, j))) {
+                let place = at(0.05 * i as f32 + 0.003, 0.05 * j as f32 + 0.002);
+                let cosine = place.normalize().dot(away);
+                let passing = lookup.light_passing(0, &light, (place, -away, cosine));
+                assert!(passing > 0.97, "{shadows:?}, {away}: {passing} at {i}, {j}");
+            }
+        }
+    }
+}
+
+#[test]
 fn at_rest_light_that_is_kept_becomes_that_of_full_shading() {
     let scene = room();
     let there = &scene.cameras[0];

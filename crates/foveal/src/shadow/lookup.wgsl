@@ -41,9 +41,11 @@ fn shadow_passing(tile: ShadowTile, at: vec2f, depth: f32, softness: f32) -> f32
 }
 
 // Metres by which a place is moved along its normal before it is compared, so that a surface does
-// not shade itself: a texel's width, times what the filter and the slope ask for.
-fn shadow_offset(tile: ShadowTile, texel_m: f32, n_dot_l: f32) -> f32 {
-    let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
+// not shade itself: a texel's width, times what the filter and the slope ask for. `cosine`: of the
+// angle between the normal and the tile's axis. Away from the tile's centre rays stand otherwise,
+// but depth changes from texel to texel as the plane is tilted against the axis.
+fn shadow_offset(tile: ShadowTile, texel_m: f32, cosine: f32) -> f32 {
+    let slope = sqrt(max(1.0 - cosine * cosine, 0.0));
     return texel_m * frame.shadow_bias * (0.4 + slope) * select(1.0, 0.5, tile.is_narrow && SHADOWS != SHADOWS_CONTACT);
 }
 
@@ -153,7 +155,7 @@ fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, n_
     let near = shadow_near(light.range);
     let tangent = select(cone_tangent, 1.0, is_cube);
     let texel_m = 2.0 * tangent * dot(along, from_light) / (tile.side - 2.0 * SHADOW_BORDER);
-    let moved = from_light + normal * shadow_offset(tile, texel_m, n_dot_l);
+    let moved = from_light + normal * shadow_offset(tile, texel_m, dot(along, normal));
     let at = vec3f(dot(across, moved), dot(up, moved), dot(along, moved));
     if at.z <= near {
         return UNSHADOWED;

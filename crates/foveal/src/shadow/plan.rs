@@ -260,7 +260,7 @@ fn sides(
     }
     let apex = Vec3::from(light.position);
     // Where most of its shadows are seen, seen from as near as they may be.
-    let typical = TYPICAL_DISTANCE * light.range;
+    let typical = TYPICAL_DISTANCE * light.seen_m;
     let away = (apex.distance(view.center) - typical).max(0.5 * typical);
     let wanted_texel = view.texel_at(away);
     let spot = spot_tangent(light);

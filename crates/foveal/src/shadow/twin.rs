@@ -150,8 +150,8 @@ impl Lookup {
         self.settings.light_radius_m.min(0.5 * height) * (0.5 * inner) / (tangent * near)
     }
 
-    fn offset(&self, tile: &ShadowTile, texel_m: f32, n_dot_l: f32) -> f32 {
-        let slope = (1.0 - n_dot_l * n_dot_l).max(0.0).sqrt();
+    fn offset(&self, tile: &ShadowTile, texel_m: f32, cosine: f32) -> f32 {
+        let slope = (1.0 - cosine * cosine).max(0.0).sqrt();
         let filter = if tile.is_narrow && self.settings.shadows != Shadows::Contact {
             0.5
         } else {
@@ -230,7 +230,7 @@ impl Lookup {
         let tangent = if spot > 0.0 { spot } else { 1.0 };
         let inner = tile.side as f32 - 2.0 * BORDER;
         let texel_m = 2.0 * tangent * axes[2].dot(from_light) / inner;
-        let moved = from_light + normal * self.offset(&tile, texel_m, n_dot_l);
+        let moved = from_light + normal * self.offset(&tile, texel_m, axes[2].dot(normal));
         let at = Vec3::from(axes.map(|axis| axis.dot(moved)));
         if at.z <= near {
             return None;

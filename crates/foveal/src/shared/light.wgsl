@@ -19,7 +19,9 @@ struct Light {
     cone_sin: f32,
     // 0 directional, 1 point, 2 spot.
     kind: u32,
-    reserved: f32,
+    // Metres within which it adds to a surface what is seen by itself: sizes of shadow tiles follow
+    // from it. The range that a file gives.
+    seen_m: f32,
 }
 
 struct Lights {

@@ -159,7 +159,7 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             cone_cos,
             cone_sin,
             kind,
-            reserved
+            seen_m
         ]
     );
     assert_same_layout!(

@@ -8,6 +8,7 @@ fn lamp(x: f32, range: f32) -> LightUniform {
     LightUniform {
         position: [x, 0.0, 0.0],
         range,
+        seen_m: range,
         radiant: [1.0; 3],
         kind: 1,
         ..LightUniform::default()
