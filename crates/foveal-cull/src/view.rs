@@ -199,7 +199,7 @@ impl Eye {
     /// An eye at `position` that looks at `target`, both world metres; along -z if they are equal.
     /// `up` need not be perpendicular to the view direction; if it is parallel to it, within
     /// rounding, another axis is taken. A pose that is not finite is refused when it is used
-    /// ([`Error::NotFinite`](crate::Error::NotFinite)).
+    /// ([`CullError::NotFinite`](crate::CullError::NotFinite)).
     #[must_use]
     pub fn look_at(
         position: impl Into<[f64; 3]>,

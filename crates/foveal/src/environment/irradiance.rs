@@ -7,6 +7,7 @@ use foveal_scene::ImageLight;
 use glam::{DVec3, Mat3, Vec3};
 
 use super::cube::{Cube, SIDES, direction_of, relative_solid_angle};
+use super::picture::Equirectangular;
 
 /// Irradiance over pi, on a surface with the normal (x, y, z), is the sum of these times
 /// 1, y, z, x, xy, yz, 3zz - 1, xz, xx - yy.
@@ -76,30 +77,54 @@ pub(super) fn of_coefficients(light: &ImageLight) -> Irradiance {
     result
 }
 
-/// The irradiance of a cube map.
-pub(super) fn irradiance_of(cube: &Cube) -> Irradiance {
-    let mut sums = [DVec3::ZERO; 9];
-    let mut sphere = 0.0;
-    for face in 0..SIDES {
-        for y in 0..cube.side {
-            // A row by itself, in 32 bits.
-            let mut row = [Vec3::ZERO; 9];
-            for x in 0..cube.side {
-                let place = cube.center(x, y);
-                let weight = relative_solid_angle(place);
-                let radiance = Vec3::from(cube.texel(face, x, y)) * weight;
-                let terms = polynomials(direction_of(face, place).normalize());
-                for (sum, term) in row.iter_mut().zip(terms) {
-                    *sum += radiance * term;
-                }
-                sphere += f64::from(weight);
+/// Radiance from parts of the sphere, weighted by their solid angles in any unit.
+#[derive(Default)]
+struct Sum {
+    terms: [DVec3; 9],
+    sphere: f64,
+}
+
+impl Sum {
+    /// Adds a row of directions with radiance and weight, which it sums in 32 bits.
+    fn add(&mut self, row: impl Iterator<Item = (Vec3, Vec3, f32)>) {
+        let mut sums = [Vec3::ZERO; 9];
+        for (direction, radiance, weight) in row {
+            for (sum, term) in sums.iter_mut().zip(polynomials(direction)) {
+                *sum += radiance * weight * term;
             }
-            for (sum, row) in sums.iter_mut().zip(row) {
-                *sum += row.as_dvec3();
-            }
+            self.sphere += f64::from(weight);
+        }
+        for (sum, row) in self.terms.iter_mut().zip(sums) {
+            *sum += row.as_dvec3();
         }
     }
-    let scale = 4.0 * std::f64::consts::PI / sphere;
-    let factors = factors();
-    std::array::from_fn(|i| (sums[i] * scale).as_vec3() * factors[i])
+
+    fn irradiance(&self) -> Irradiance {
+        let scale = 4.0 * std::f64::consts::PI / self.sphere;
+        let factors = factors();
+        std::array::from_fn(|i| (self.terms[i] * scale).as_vec3() * factors[i])
+    }
+}
+
+/// The irradiance of a cube map.
+pub(super) fn irradiance_of(cube: &Cube) -> Irradiance {
+    let mut sum = Sum::default();
+    for (face, y) in (0..SIDES).flat_map(|face| (0..cube.side).map(move |y| (face, y))) {
+        sum.add((0..cube.side).map(|x| {
+            let place = cube.center(x, y);
+            let direction = direction_of(face, place).normalize();
+            let radiance = cube.texel(face, x, y);
+            (direction, radiance.into(), relative_solid_angle(place))
+        }));
+    }
+    sum.irradiance()
+}
+
+/// The irradiance of a picture: of each of its texels, however small.
+pub(super) fn irradiance_of_picture(picture: &Equirectangular) -> Irradiance {
+    let mut sum = Sum::default();
+    for (sine, row) in picture.rows() {
+        sum.add(row.map(|(direction, radiance)| (direction, radiance.into(), sine)));
+    }
+    sum.irradiance()
 }

@@ -6,7 +6,7 @@ use foveal_scene::{Environment, ImageLight};
 use glam::{Quat, Vec2, Vec3, Vec3A};
 
 use super::cube::{Cube, direction_of};
-use super::irradiance::{Irradiance, irradiance_of, of_coefficients};
+use super::irradiance::{Irradiance, irradiance_of, irradiance_of_picture, of_coefficients};
 use super::picture::Equirectangular;
 use super::prefilter::{Levels, halves, prefilter};
 use crate::Error;
@@ -57,7 +57,11 @@ impl EnvironmentMap {
             picture = picture.halved();
         }
         let samples = if picture.width() > 4 * side { 3 } else { 2 };
-        Ok(Self::from_radiance(side, samples, |d| picture.sample(d)))
+        let irradiance = irradiance_of_picture(&picture);
+        let picture = picture.evened();
+        let mut map = Self::from_radiance(side, samples, |d| picture.sample(d));
+        map.set_irradiance(irradiance);
+        Ok(map)
     }
 
     /// A scene's own sky.
@@ -84,10 +88,15 @@ impl EnvironmentMap {
         let samples = if is_as_it_is { 1 } else { 2 };
         let mut filtered =
             Self::from_radiance(side, samples, |d| cube.sample((turned * d).normalize()));
-        if let Some(own) = Arc::get_mut(&mut filtered.0) {
-            own.irradiance = of_coefficients(light);
-        }
+        filtered.set_irradiance(of_coefficients(light));
         filtered
+    }
+
+    /// Of a map without copies.
+    fn set_irradiance(&mut self, irradiance: Irradiance) {
+        if let Some(own) = Arc::get_mut(&mut self.0) {
+            own.irradiance = irradiance;
+        }
     }
 
     /// From the radiance in each direction, a mean of `samples` x `samples` places a texel.

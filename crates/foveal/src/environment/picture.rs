@@ -2,7 +2,7 @@
 
 use std::f32::consts::{PI, TAU};
 
-use glam::{Vec3, Vec3A};
+use glam::{DVec3, Vec3, Vec3A};
 
 use crate::Error;
 
@@ -88,6 +88,53 @@ impl Equirectangular {
             height,
             texels: (0..width * height).map(texel).collect(),
         }
+    }
+
+    /// The same picture with as even a resolution as a sphere has: towards the poles texels of a row
+    /// lie closer together than at the equator, and become the mean of as many as are as wide
+    /// together. So a few lookups for a solid angle miss none of them.
+    pub(super) fn evened(mut self) -> Self {
+        let mut sums = Vec::with_capacity(self.width + 1);
+        for (row, texels) in self.texels.chunks_exact_mut(self.width).enumerate() {
+            let sine = ((row as f32 + 0.5) / self.height as f32 * PI).sin();
+            // To each side.
+            let reach = ((0.5 / sine) as usize).min((self.width - 1) / 2);
+            if reach == 0 {
+                continue;
+            }
+            sums.clear();
+            let mut sum = DVec3::ZERO;
+            for texel in texels.iter() {
+                sums.push(sum);
+                sum += Vec3::from(*texel).as_dvec3();
+            }
+            // Of the texels before a place, which may lie beyond the row's ends.
+            let before = |at: isize| {
+                let width = sums.len() as isize;
+                sum * at.div_euclid(width) as f64 + sums[at.rem_euclid(width) as usize]
+            };
+            let count = (2 * reach + 1) as f64;
+            for (i, texel) in (0..).zip(texels.iter_mut()) {
+                let reach = reach as isize;
+                let mean = (before(i + reach + 1) - before(i - reach)) / count;
+                *texel = mean.as_vec3a();
+            }
+        }
+        self
+    }
+
+    /// Each row: the sine of the angle from the pole, and its directions with what comes from there.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (f32, impl Iterator<Item = (Vec3, Vec3A)>)> {
+        let (width, height) = (self.width as f32, self.height as f32);
+        let rows = self.texels.chunks_exact(self.width).enumerate();
+        rows.map(move |(row, texels)| {
+            let (sine, y) = ((row as f32 + 0.5) / height * PI).sin_cos();
+            let directions = texels.iter().enumerate().map(move |(i, &texel)| {
+                let (z, x) = (((i as f32 + 0.5) / width - 0.5) * TAU).sin_cos();
+                (Vec3::new(sine * x, y, sine * z), texel)
+            });
+            (sine, directions)
+        })
     }
 
     /// Radiance in a unit direction, blended between four texels.

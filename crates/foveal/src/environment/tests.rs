@@ -163,6 +163,47 @@ fn a_small_sun_keeps_its_energy() {
 }
 
 #[test]
+fn a_sun_of_one_texel_lights_and_is_mirrored_wherever_it_stands() {
+    for width in [256_usize, 1024, 2048] {
+        let height = width / 2;
+        for elevation_deg in [0.0f32, 45.0, 75.0, 85.0, 88.0, 89.7] {
+            let row = ((90.0 - elevation_deg) / 180.0 * height as f32) as usize;
+            let column = width / 3 + 7;
+            let mut rgb = vec![[0.0; 3]; width * height];
+            rgb[row * width + column] = [1e4; 3];
+            let (sine, y) = ((row as f32 + 0.5) / height as f32 * PI).sin_cos();
+            let turn = ((column as f32 + 0.5) / width as f32 - 0.5) * 2.0 * PI;
+            let at = Vec3::new(sine * turn.cos(), y, sine * turn.sin());
+            let power = 1e4 * 2.0 * PI * PI / (width * height) as f32 * sine;
+            let map = EnvironmentMap::new(width as u32, height as u32, &rgb).unwrap();
+            let around = Around::new(&map, &Settings::default());
+            // Facing a small source, order 2 gives 1.0625 times its irradiance.
+            let found = around.irradiance(at).x * PI / 1.0625 / power;
+            assert!(
+                (found - 1.0).abs() < 0.01,
+                "{width}, {elevation_deg}: {found}"
+            );
+            let cube = map.texels(0).iter().map(|t| f32_of_half(t[0]));
+            let side = map.side() as usize;
+            let mirrored: f32 = (cube.enumerate())
+                .map(|(i, radiance)| {
+                    let (x, y) = (i % side, i / side % side);
+                    let place = super::cube::texel_center(side, x, y);
+                    radiance * relative_solid_angle(place)
+                })
+                .sum();
+            let found = mirrored * 4.0 / (side * side) as f32 / power;
+            // A few lookups a texel of the cube.
+            let expected = 0.5..1.6;
+            assert!(
+                expected.contains(&found),
+                "{width}, {elevation_deg}: mirrored {found}"
+            );
+        }
+    }
+}
+
+#[test]
 fn irradiance_is_that_of_the_integral() {
     let (width, height, rgb) = generate::surroundings(256);
     // Without the sun, which order 2 does not hold.
