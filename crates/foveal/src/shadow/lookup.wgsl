@@ -230,12 +230,13 @@ fn arriving_at(place: ShadowPlace) -> Arriving {
         return ALL_ARRIVES;
     }
     let part = shadow_passing(place.tile, place.at, place.depth, place.softness);
-    var variance = 0.0;
+#ifdef LIGHT
     if place.apart > 0.0 {
         let over_block = block_passing(place);
-        variance = over_block * (1.0 - over_block);
+        return Arriving(part, over_block * (1.0 - over_block));
     }
-    return Arriving(part, variance);
+#endif
+    return Arriving(part, 0.0);
 }
 
 // What of a directional light's rays arrives at a surface's sample; `block_m` as in `light_surface`.

@@ -104,14 +104,19 @@ fn add_incident(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, a: IncidentLight
     }
     let reflected = r.diffuse_weight * (1.0 - s.metallic) * s.base_color / PI + r.specular;
     let irradiance = a.irradiance * arriving.part;
+#ifdef LIGHT
     let unshadowed = luminance(reflected * a.irradiance) * n_dot_l;
+    let variance = arriving.variance * unshadowed * unshadowed;
+#else
+    let variance = 0.0;
+#endif
     return Lit(
         sum.radiance + reflected * irradiance * n_dot_l,
         sum.diffuse + r.diffuse_weight * irradiance * n_dot_l,
         sum.specular + r.specular * irradiance * n_dot_l,
         sum.direction + a.direction * luminance(irradiance),
         sum.specular_direction + a.direction * (luminance(r.specular * irradiance) * n_dot_l),
-        sum.variance + arriving.variance * unshadowed * unshadowed,
+        sum.variance + variance,
     );
 }
 

@@ -172,7 +172,7 @@ impl HistoryPasses {
             ),
             shade: pass(
                 "shading of samples",
-                shader::SHADING_HISTORY_SHADE,
+                shader::SHADING_HISTORY_SHADE.variant(&["LIGHT"]),
                 "shade_samples",
                 Some(input),
                 &[read, read, light, radiance, write],

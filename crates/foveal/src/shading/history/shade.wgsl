@@ -1,5 +1,7 @@
-// Shades the samples of a list, and measures by how much they differ from what was expected.
+// Shades the samples of a list, and measures by how much they differ from what was expected. LIGHT asks
+// for shadows within blocks.
 
+#variant LIGHT
 #import shading/coarse/block_light.wgsl
 #import shading/coarse/light.wgsl
 #import shading/history/measured.wgsl
