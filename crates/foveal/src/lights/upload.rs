@@ -6,14 +6,14 @@ use foveal_scene::{Light, LightKind};
 /// More lights would need more workgroups in one dispatch than devices give, many times over.
 pub(crate) const MAX_LIGHTS: usize = 16_384;
 
-/// Irradiance at which a light without a range of its own ends, at an exposure in stops: what a
-/// hundred such lights add to a surface, or one to a highlight, is still seen far above it.
-/// Half-precision radiance holds no more than 16 stops.
+/// Irradiance at which a light without a range of its own ends, at an exposure in stops. An eighth of
+/// the least that a picture of 8 bits shows of one light, since highlights are brighter and lights add
+/// up. Half-precision radiance holds no more than 16 stops.
 fn faintest(exposure_stops: f32) -> f32 {
     (-11.0 - exposure_stops.clamp(0.0, 16.0)).exp2()
 }
 
-/// Part of the range of such a light beyond which it adds less than 2^-8 by itself.
+/// Part of such a light's range within which its irradiance is above 2^-8: the root of an eighth.
 const MOSTLY_SEEN: f32 = 0.353_553_4;
 
 /// Mirrors `Light` in `shared/light.wgsl`, where the fields are explained.
@@ -70,7 +70,7 @@ impl LightUniform {
 
     fn new(light: &Light, faintest: f32) -> Self {
         let radiant = light.color * light.intensity;
-        // An infinite light would be in every cluster: it ends where it has become invisible.
+        // An infinite light would be in every cluster: it ends where it is too faint.
         let range = (light.range_m.filter(|range| range.is_finite()))
             .unwrap_or_else(|| (radiant.max_element() / faintest).max(0.0).sqrt());
         let seen = if light.range_m.is_some_and(f32::is_finite) {

@@ -126,15 +126,10 @@ fn view_position(pixel: vec2f, distance: f32) -> vec3f {
     return position_in_view(view_at(pixel), in_eye(pixel), distance);
 }
 
-// Width of a pixel that faces a view's eye, in metres: at distance 1, orthographic at any.
-fn pixel_width(view: u32) -> f32 {
-    let half_width = select(frame.views[0].view_from_ndc.x, frame.views[1].view_from_ndc.x, view != 0u);
-    return 2.0 * abs(half_width) / frame.size.x;
-}
-
-// The same at a distance along the view axis.
+// Width in metres of a pixel that faces a view's eye, at a distance along the view axis.
 fn pixel_width_at(view: u32, distance: f32) -> f32 {
-    return pixel_width(view) * select(distance, 1.0, frame.orthographic != 0u);
+    let half_width = select(frame.views[0].view_from_ndc.x, frame.views[1].view_from_ndc.x, view != 0u);
+    return 2.0 * abs(half_width) / frame.size.x * select(distance, 1.0, frame.orthographic != 0u);
 }
 
 // World position of a pixel position of the target at a distance along the view axis.

@@ -261,10 +261,10 @@ fn light_of(walk: LightWalk) -> Light {
 }
 
 // Radiance that leaves a surface towards the eye, and the lights' light that it comes from. `block_m`:
-// width of the block that the sample stands for, 0: that of a pixel, of which no variance is asked.
-// Lights
-// are summed in ascending order whichever way they are found, so that clustered and brute agree to
-// the bit. Directional ones have a loop of their own: a device that runs all branches would look up
+// metres that the sample's block is wide; 0 for a pixel, which has no variance.
+//
+// Lights are summed in ascending order whichever way they are found, so that clustered and brute agree
+// to the bit. Directional ones have a loop of their own: a device that runs all branches would look up
 // both kinds' shadows for each light. The loop over the others asks at its end: such a device runs
 // the body of a loop once for its last question, too.
 fn light_surface(s: Surface, pixel: vec2f, distance: f32, block_m: f32) -> Lit {
