@@ -47,18 +47,21 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
     if textureLoad(sample_identity, first_texel, 0).x == 0u {
         return Blend(vec4u(0u), 0.0, vec2f(pixel) + 0.5);
     }
-    var sum = Surface(vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, vec3f(0.0), PLAIN_DIELECTRIC);
+    var sum = Surface(vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, vec3f(0.0), PLAIN_DIELECTRIC);
     var depth = 0.0;
     var position = vec2f(0.0);
     let part = 1.0 / f32(countOneBits(members));
     for (var left = members; left != 0u; left &= left - 1u) {
         let index = firstTrailingBit(left);
         let texel = sample_texel(pixel, index);
-        let words = without_face_normal(load_words(gbuffer_surface, texel));
+        let with_face = load_words(gbuffer_surface, texel);
+        let words = without_face_normal(with_face);
         let sample_depth = load_depth(gbuffer_depth, texel);
         let at = sample_position(pixel, index);
         let s = unpack_surface(words, world_position(at, view_distance(sample_depth)));
         sum.normal += s.normal;
+        // Turned to the viewer, as normals are.
+        sum.vertex_normal -= normalize(face_normal(with_face.w));
         sum.base_color += s.base_color;
         sum.metallic += s.metallic;
         sum.roughness += s.roughness;
@@ -74,10 +77,12 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
         depth += sample_depth;
         position += at;
     }
+    // Opposite normals may cancel: then any is as good.
+    let normal = normalize(sum.normal + vec3f(0.0, 1e-6, 0.0));
     let mean = Surface(
         vec3f(0.0),
-        // Opposite normals may cancel: then any is as good.
-        sum.normal + vec3f(0.0, 1e-6, 0.0),
+        normal,
+        normalize(sum.vertex_normal + 1e-6 * normal),
         sum.base_color * part,
         sum.metallic * part,
         sum.roughness * part,
@@ -87,7 +92,7 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
     );
     var words = pack_surface(mean);
     words.w |= select(0u, MIRRORED, MIRROR);
-    if (words.w & OWN_DIELECTRIC) != 0u {
+    if (words.w & (OWN_DIELECTRIC | OWN_VERTEX_NORMAL)) != 0u {
         return Blend(words, depth * part, position * part);
     }
     let color = vec3u(round(sqrt(saturate(mean.base_color)) * 4080.0));

@@ -215,17 +215,11 @@ impl<'a> Inputs<'a> {
             0 => 0.0,
             _ => self.pixel_width(self.distance(self.depth(texel))) * (1 << level) as f32,
         };
-        let lit = light_surface_with(
-            self.scene,
-            self.lights,
-            model,
-            (&s, v),
-            &|(n, l), s, cosine| {
-                self.lookup.as_ref().map_or(ALL_ARRIVES, |lookup| {
-                    lookup.light_arriving(n, l, (s.position, s.normal, cosine), block_m)
-                })
-            },
-        );
+        let lit = light_surface_with(self.scene, self.lights, model, (&s, v), &|(n, l), s| {
+            self.lookup.as_ref().map_or(ALL_ARRIVES, |lookup| {
+                lookup.light_arriving(n, l, (s.position, s.vertex_normal), block_m)
+            })
+        });
         let lamps = scattered(&s) * lit.diffuse + lit.specular;
         let direction = lit.direction.try_normalize().unwrap_or(s.normal);
         let specular_direction = lit.specular_direction.try_normalize().unwrap_or(s.normal);

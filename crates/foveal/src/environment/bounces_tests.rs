@@ -44,6 +44,7 @@ fn metal(color: Vec3, roughness: f32) -> Surface {
     Surface {
         position: Vec3::ZERO,
         normal: Vec3::Z,
+        vertex_normal: Vec3::Z,
         base_color: color,
         metallic: 1.0,
         roughness,

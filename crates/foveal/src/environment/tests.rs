@@ -304,6 +304,7 @@ fn a_white_furnace_shows_what_the_reflection_model_says() {
                 let s = Surface {
                     position: Vec3::ZERO,
                     normal: Vec3::Z,
+                    vertex_normal: Vec3::Z,
                     base_color: Vec3::ONE,
                     metallic,
                     roughness: step as f32 / 10.0,

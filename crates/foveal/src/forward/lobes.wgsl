@@ -121,12 +121,11 @@ fn lobes_at(s: Surface, normal: vec3f, tangent_at_rest: vec4f, uv: vec4f, facing
     let tangent = turned(normal, tangent_at_rest);
     let bitangent = cross(normal, tangent.xyz) * tangent.w;
     let has_tangent = dot(tangent.xyz, tangent.xyz) > 0.0;
-    let geometric = normalize(normal) * facing;
     let mirror = mirror_of(s);
     var found = LobedSurface(s, mirror, 0.0, s, mirror, vec3f(0.0), 1.0, vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, Film(0.0, 1.0, 0.0));
     if (MATERIAL_CLASS & HAS_CLEARCOAT) != 0u {
         found.clearcoat = lobes.clearcoat * sample_lobe(CLEARCOAT, uv).r;
-        var n = geometric;
+        var n = s.vertex_normal;
         if bound_texture(CLEARCOAT_NORMAL) != 0u {
             var texel = sample_lobe(CLEARCOAT_NORMAL, uv).xyz * 2.0 - 1.0;
             if (MATERIAL_CLASS & COAT_NORMAL_OF_TWO) != 0u {
@@ -137,7 +136,9 @@ fn lobes_at(s: Surface, normal: vec3f, tangent_at_rest: vec4f, uv: vec4f, facing
             n = select(n, normalize(bent) * facing, has_tangent);
         }
         let roughness = saturate(lobes.clearcoat_roughness * sample_lobe(CLEARCOAT_ROUGHNESS, uv).g);
-        found.coat = Surface(s.position, n, vec3f(0.0), 0.0, roughness, s.occlusion, vec3f(0.0), PLAIN_DIELECTRIC);
+        found.coat = Surface(
+            s.position, n, s.vertex_normal, vec3f(0.0), 0.0, roughness, s.occlusion, vec3f(0.0), PLAIN_DIELECTRIC,
+        );
         found.coat_mirror = mirror_of(found.coat);
     }
     if (MATERIAL_CLASS & HAS_SHEEN) != 0u {
@@ -307,11 +308,6 @@ fn lobes_face(s: LobedSurface, a: IncidentLight) -> bool {
     return cosine > 0.0 && any(a.irradiance > vec3f(0.0));
 }
 
-// Cosine with which shadows are looked up, at least 0.001: a coat may be lit where its base is not.
-fn shadowed_cosine(s: LobedSurface, a: IncidentLight) -> f32 {
-    return max(dot(s.base.normal, a.direction), 1e-3);
-}
-
 // A directional light's part in the radiance of a lobed surface; `left` is what the coat leaves.
 fn lobes_lit_from_afar(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3f {
     let light = light_at(index);
@@ -320,8 +316,7 @@ fn lobes_lit_from_afar(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3
         return vec3f(0.0);
     }
     if SHADOWS != 0u {
-        let cosine = shadowed_cosine(s, a);
-        a.irradiance *= directional_arriving(index, light, s.base.position, s.base.normal, cosine, 0.0).part;
+        a.irradiance *= directional_arriving(index, light, s.base, 0.0).part;
     }
     return lobes_reflected(s, v, left, a);
 }
@@ -333,8 +328,7 @@ fn lobes_lit_by(s: LobedSurface, v: vec3f, left: f32, index: u32, light: Light) 
         return vec3f(0.0);
     }
     if SHADOWS != 0u {
-        let cosine = shadowed_cosine(s, a);
-        a.irradiance *= light_arriving(index, light, s.base.position, s.base.normal, cosine, 0.0).part;
+        a.irradiance *= light_arriving(index, light, s.base, 0.0).part;
     }
     return lobes_reflected(s, v, left, a);
 }
@@ -359,7 +353,7 @@ fn lobes_ambient(s: LobedSurface, v: vec3f, left: f32, seen: f32) -> vec3f {
     if (MATERIAL_CLASS & HAS_SHEEN) != 0u {
         let cosine = saturate(dot(s.base.normal, v));
         let around = Surface(
-            s.base.position, s.base.normal, vec3f(1.0), 0.0, 1.0, 1.0, vec3f(0.0), vec4f(0.0),
+            s.base.position, s.base.normal, s.base.vertex_normal, vec3f(1.0), 0.0, 1.0, 1.0, vec3f(0.0), vec4f(0.0),
         );
         let white = environment_diffuse(around, v) * seen;
         below = below * below_sheen(s, cosine) + s.sheen_color * sheen_part(cosine, s.sheen_roughness) * white;

@@ -127,6 +127,7 @@ fn flat(metallic: f32, roughness: f32) -> Surface {
     Surface {
         position: Vec3::ZERO,
         normal: Vec3::Z,
+        vertex_normal: Vec3::Z,
         base_color: Vec3::ONE,
         metallic,
         roughness,

@@ -9,7 +9,7 @@ use glam::{Mat3, Vec2, Vec3, Vec4};
 
 use super::twin::{
     Surface, assert_equals_twin, ggx_lobe, reflect, squared_alpha, unit_from_octahedral,
-    unit_from_square, unpack_surface,
+    unit_from_square, unpack_shared_exponent, unpack_surface,
 };
 use crate::forward::twin::{front, quads};
 use crate::testing::{picture, rendered, small, texels};
@@ -68,6 +68,30 @@ pub(super) fn normal_of(words: [u32; 4]) -> Vec3 {
     }
     let coarse = |bits: u32| f32::from(bits as u16 as i16 >> 4) / 2047.0;
     unit_from_square(Vec2::new(coarse(words[1]), coarse(words[1] >> 16)))
+}
+
+/// What a surface emits: nothing where its vertex normal lies there.
+pub(super) fn glow_of(words: [u32; 4]) -> Vec3 {
+    match has_own(words) && is_no_glow(words[2]) {
+        true => Vec3::ZERO,
+        false => unpack_shared_exponent(words[2]),
+    }
+}
+
+/// `is_no_glow` in `shared/surface.wgsl`.
+fn is_no_glow(word: u32) -> bool {
+    word & 0xfc02_0100 == 0xf800_0000
+}
+
+/// The vertex normal where it is not the normal: 6 bits each way.
+pub(super) fn vertex_normal_of(words: [u32; 4]) -> Option<Vec3> {
+    let [_, _, glow, last] = words;
+    let bits = match has_own(words) {
+        true => is_no_glow(glow).then_some([glow, glow >> 9]),
+        false => (last & 1 << 30 != 0).then_some([last >> 16, last >> 22]),
+    }?;
+    let part = bits.map(|b| (b & 63) as f32 / 31.0 - 1.0);
+    Some(unit_from_square(part.into()))
 }
 
 /// The grid of spheres, each with another dielectric.
@@ -162,6 +186,7 @@ fn between_metal_and_dielectric_surfaces_reflect_the_mix_of_both() {
             let s = Surface {
                 position: Vec3::ZERO,
                 normal: Vec3::Z,
+                vertex_normal: Vec3::Z,
                 base_color: Vec3::new(0.9, 0.5, 0.2),
                 metallic,
                 roughness: 0.5,

@@ -5,7 +5,7 @@ use foveal_generate as generate;
 use foveal_scene::{Camera, Light, LightKind, Projection, Scene};
 use glam::{IVec2, UVec2, Vec2, Vec2Swizzles, Vec3, Vec4};
 
-use super::dielectric::{dielectric_of, normal_of};
+use super::dielectric::{dielectric_of, glow_of, normal_of, vertex_normal_of};
 use crate::lights::LightUniform;
 use crate::testing::{f32_of_half, picture, rendered, small, texels};
 use crate::{DebugView, LightAssignment, LightingModel, Renderer, Settings};
@@ -14,6 +14,7 @@ use crate::{DebugView, LightAssignment, LightingModel, Renderer, Settings};
 pub(crate) struct Surface {
     pub(crate) position: Vec3,
     pub(crate) normal: Vec3,
+    pub(crate) vertex_normal: Vec3,
     pub(crate) base_color: Vec3,
     pub(crate) metallic: f32,
     pub(crate) roughness: f32,
@@ -59,11 +60,12 @@ pub(crate) fn unpack_surface(words: [u32; 4], position: Vec3) -> Surface {
     Surface {
         position,
         normal: normal_of(words),
+        vertex_normal: vertex_normal_of(words).unwrap_or_else(|| normal_of(words)),
         base_color: color.truncate() * color.truncate(),
         metallic: material.x,
         roughness: material.y,
         occlusion: color.w,
-        emissive: unpack_shared_exponent(words[2]),
+        emissive: glow_of(words),
         dielectric: dielectric_of(words),
     }
 }
@@ -205,9 +207,8 @@ pub(crate) fn luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// What of a light arrives at a surface: of the light with its number, the surface, and the cosine
-/// of the angle between its normal and the light's direction.
-pub(crate) type Passing<'a> = &'a dyn Fn((usize, &LightUniform), &Surface, f32) -> Arriving;
+/// What of a light arrives at a surface: of the light with its number, and the surface.
+pub(crate) type Passing<'a> = &'a dyn Fn((usize, &LightUniform), &Surface) -> Arriving;
 
 /// Unit direction to a light, and irradiance on a surface at a position that faces it.
 pub(crate) fn incident(light: &LightUniform, position: Vec3) -> (Vec3, Vec3) {
@@ -242,7 +243,7 @@ fn from_light(
     if n_dot_l <= 0.0 || irradiance.cmple(Vec3::ZERO).all() {
         return Lit::default();
     }
-    let arriving = passing((number, light), s, n_dot_l);
+    let arriving = passing((number, light), s);
     let whole = irradiance * n_dot_l;
     let irradiance = irradiance * arriving.part;
     let [diffuse_weight, specular] = reflect(model, s, v, direction, n_dot_l);
@@ -268,7 +269,7 @@ pub(crate) fn light_surface(
     s: &Surface,
     v: Vec3,
 ) -> Lit {
-    light_surface_with(scene, lights, model, (s, v), &|_, _, _| ALL_ARRIVES)
+    light_surface_with(scene, lights, model, (s, v), &|_, _| ALL_ARRIVES)
 }
 
 /// The same where not all light arrives.

@@ -3,6 +3,7 @@
 
 #import shared/frame.wgsl
 #import shared/light.wgsl
+#import shared/surface.wgsl
 #import shadow/contact.wgsl
 #import shadow/tile.wgsl
 #expects shadow_atlas, shadow_sampler
@@ -134,7 +135,7 @@ fn texels_apart(block_m: f32, texel_m: f32) -> f32 {
 
 // Of a light that shines from a point: in a side of a cube around it, or, where its cone fits into
 // one tile, in that.
-fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32, block_m: f32) -> ShadowPlace {
+fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, block_m: f32) -> ShadowPlace {
     let from_light = position - light.position;
     let side = cube_side(from_light);
     // Three sides' tiles; or a cone's one, three times, and its tangent, which of a cube is 0.
@@ -160,7 +161,7 @@ fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, n_
     if at.z <= near {
         return UNSHADOWED;
     }
-    let softness = pyramid_softness(near, tangent, tile.side, n_dot_l * length(from_light));
+    let softness = pyramid_softness(near, tangent, tile.side, max(-dot(normal, from_light), 0.0));
     // Where n p = c is the plane, seen from the light, 1 / z = (n / c) (x / z, y / z, 1).
     let n = vec2f(dot(across, normal), -dot(up, normal));
     let c = min(dot(vec3f(dot(across, normal), dot(up, normal), dot(along, normal)), at), -1e-4);
@@ -174,8 +175,9 @@ fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, n_
 const LEAST_SUN_COSINE: f32 = 0.1;
 
 // Of a directional light: in the finest cascade that holds the place.
-fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32, block_m: f32) -> ShadowPlace {
+fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, block_m: f32) -> ShadowPlace {
     let axes = axes_along(light.direction);
+    let cosine = -dot(normal, light.direction);
     let words = shadow_words(first);
     let cascades = shadow_words(first + 1u).x;
     for (var i = 0u; i < 4u; i++) {
@@ -190,7 +192,7 @@ fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, n_do
         if tile.side == 0.0 || max(away.x, away.y) > cascade.z - margin {
             continue;
         }
-        let moved = position + normal * shadow_offset(tile, texel_m, n_dot_l);
+        let moved = position + normal * shadow_offset(tile, texel_m, cosine);
         let at = (vec2f(dot(axes[0], moved), dot(axes[1], moved)) - cascade.xy) / texel_m;
         // End along the rays, and one by the length.
         let span = shadow_row(first + 1u).zw;
@@ -198,7 +200,7 @@ fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, n_do
         // Metres between two depths, times the tangent of half the angle that the light fills.
         let softness = frame.sun_tangent / (span.y * texel_m);
         let n = vec2f(dot(axes[0], normal), -dot(axes[1], normal));
-        let slope = -n * (span.y * texel_m / max(n_dot_l, LEAST_SUN_COSINE));
+        let slope = -n * (span.y * texel_m / max(cosine, LEAST_SUN_COSINE));
         let apart = texels_apart(block_m, texel_m);
         return ShadowPlace(tile, 0.5 * tile.side + vec2f(at.x, -at.y), depth, softness, slope, apart);
     }
@@ -239,12 +241,13 @@ fn arriving_at(place: ShadowPlace) -> Arriving {
     return Arriving(part, 0.0);
 }
 
-// What of a directional light's rays arrives at a surface's sample; `block_m` as in `light_surface`.
-fn directional_arriving(index: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32, block_m: f32) -> Arriving {
-    return arriving_at(place_from_sun(index * SHADOW_ROWS, light, position, normal, n_dot_l, block_m));
+// What of a directional light's rays arrives at a surface's sample; `block_m` as in `light_surface`. The
+// atlas knows nothing of normal maps, so the vertex normal tells how the surface lies.
+fn directional_arriving(index: u32, light: Light, s: Surface, block_m: f32) -> Arriving {
+    return arriving_at(place_from_sun(index * SHADOW_ROWS, light, s.position, s.vertex_normal, block_m));
 }
 
 // The same of a light that shines from a point.
-fn light_arriving(index: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32, block_m: f32) -> Arriving {
-    return arriving_at(place_from_point(index * SHADOW_ROWS, light, position, normal, n_dot_l, block_m));
+fn light_arriving(index: u32, light: Light, s: Surface, block_m: f32) -> Arriving {
+    return arriving_at(place_from_point(index * SHADOW_ROWS, light, s.position, s.vertex_normal, block_m));
 }

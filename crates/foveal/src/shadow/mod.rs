@@ -10,6 +10,8 @@
 
 mod atlas;
 #[cfg(test)]
+mod bent_tests;
+#[cfg(test)]
 mod budget_tests;
 mod changed;
 #[cfg(test)]

@@ -69,7 +69,7 @@ fn shadows_are_those_of_rays() {
                 continue;
             }
             let is_dark = is_blocked(&triangles, s.position + 2e-3 * s.normal, to);
-            let passing = lookup.light_passing(number, light, (s.position, s.normal, n_dot_l));
+            let passing = lookup.light_passing(number, light, (s.position, s.vertex_normal));
             looked += 1;
             blocked += u32::from(is_dark);
             wrong += u32::from((passing > 0.5) == is_dark);

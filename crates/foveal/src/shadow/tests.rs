@@ -102,10 +102,10 @@ pub(super) fn compared_with_twin(
             let model = settings.lighting.model;
             light_surface_with(scene, &lights, model, (surface, v), passing).radiance
         };
-        let cpu = lit(&|(number, light), s, n_dot_l| {
-            lookup.light_arriving(number, light, (s.position, s.normal, n_dot_l), 0.0)
+        let cpu = lit(&|(number, light), s| {
+            lookup.light_arriving(number, light, (s.position, s.vertex_normal), 0.0)
         });
-        let bright = lit(&|_, _, _| ALL_ARRIVES);
+        let bright = lit(&|_, _| ALL_ARRIVES);
         compared += 1;
         dark += usize::from(cpu.max_element() < 0.8 * bright.max_element());
         let tolerance = 0.01 * cpu.max_element().max(0.02);

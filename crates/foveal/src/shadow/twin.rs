@@ -160,12 +160,12 @@ impl Lookup {
         texel_m * self.settings.texels_moved * (0.4 + slope) * filter
     }
 
-    /// Part of a light that reaches a surface's sample.
+    /// Part of a light that reaches a surface's sample, by position and vertex normal.
     pub(crate) fn light_passing(
         &self,
         index: usize,
         light: &LightUniform,
-        surface: (Vec3, Vec3, f32),
+        surface: (Vec3, Vec3),
     ) -> f32 {
         self.light_arriving(index, light, surface, 0.0).part
     }
@@ -175,7 +175,7 @@ impl Lookup {
         &self,
         index: usize,
         light: &LightUniform,
-        surface: (Vec3, Vec3, f32),
+        surface: (Vec3, Vec3),
         block_m: f32,
     ) -> Arriving {
         let first = index * ROWS;
@@ -214,7 +214,7 @@ impl Lookup {
         &self,
         first: usize,
         light: &LightUniform,
-        (position, normal, n_dot_l): (Vec3, Vec3, f32),
+        (position, normal): (Vec3, Vec3),
         block_m: f32,
     ) -> Option<Place> {
         let from_light = position - Vec3::from(light.position);
@@ -236,7 +236,7 @@ impl Lookup {
             return None;
         }
         let place = Vec2::new(at.x, -at.y) * (0.5 * inner / (at.z * tangent));
-        let height = n_dot_l * from_light.length();
+        let height = f32::max(-normal.dot(from_light), 0.0);
         let n = Vec3::from(axes.map(|axis| axis.dot(normal)));
         let per_texel = near * tangent / (n.dot(at).min(-1e-4) * 0.5 * inner);
         Some(Place {
@@ -253,15 +253,16 @@ impl Lookup {
         &self,
         first: usize,
         direction: Vec3,
-        (position, normal, n_dot_l): (Vec3, Vec3, f32),
+        (position, normal): (Vec3, Vec3),
         block_m: f32,
     ) -> Option<Place> {
+        let cosine = -normal.dot(direction);
         let (tile, center, texel_m) = self.cascade_at(first, direction, position)?;
         let [_, _, end, per_length] = self.row(first + 1);
-        let moved = position + normal * self.offset(&tile, texel_m, n_dot_l);
+        let moved = position + normal * self.offset(&tile, texel_m, cosine);
         let at = (on_plane(direction, moved) - center) / texel_m;
         let n = on_plane(direction, normal);
-        let per_texel = per_length * texel_m / n_dot_l.max(LEAST_SUN_COSINE);
+        let per_texel = per_length * texel_m / cosine.max(LEAST_SUN_COSINE);
         Some(Place {
             at: Vec2::new(at.x, -at.y) + 0.5 * tile.side as f32,
             depth: (end - direction.dot(moved)) * per_length,

@@ -10,7 +10,8 @@ override BLACK_BELOW_LOBES: bool = false;
 fn below_lobes(s: Surface, k: f32) -> Surface {
     if BLACK_BELOW_LOBES {
         return Surface(
-            s.position, s.normal, k * s.base_color, k * s.metallic, s.roughness, s.occlusion, k * s.emissive, k * s.dielectric,
+            s.position, s.normal, s.vertex_normal, k * s.base_color, k * s.metallic, s.roughness, s.occlusion,
+            k * s.emissive, k * s.dielectric,
         );
     }
     return s;

@@ -3,11 +3,12 @@
 #import shared/surface.wgsl
 
 // With a triangle's own normal in the upper half of the last word. Where that holds bits of a
-// dielectric, these go to the emissive as what emission never gives, the largest exponent with
-// small numbers; a surface that glows keeps no dielectric, unless it is unlit: see below.
+// dielectric, these go to the emissive as what emission never gives; a surface that glows keeps no
+// dielectric, unless it is unlit: see below. Vertex normals are not kept.
 fn with_face_normal(words: vec4u, face: vec3f) -> vec4u {
     let bits = dielectric_of(words);
-    let moves = (words.w & OWN_DIELECTRIC) != 0u && words.z == 0u;
+    let is_own = (words.w & OWN_DIELECTRIC) != 0u;
+    let moves = is_own && (words.z == 0u || is_no_glow(words.z));
     let moved = (31u << 27u) | (bits & 255u) | (((bits >> 8u) & 63u) << 9u);
     let upper = pack4x8snorm(vec4f(0.0, 0.0, octahedral_from_unit(face)));
     return vec4u(words.xy, select(words.z, moved, moves), (words.w & 0xffffu) | upper);
@@ -26,6 +27,5 @@ fn without_face_normal(words: vec4u) -> vec4u {
     let moved = vec4u(words.xy, 0u, lower | upper);
     let unlit = words.x == UNLIT_COLOR && lower == UNLIT_LOWER;
     let kept = vec4u(words.xyz, lower | select(0u, OWN_DIELECTRIC, unlit));
-    // Exponent 31, and each channel's highest bit 0.
-    return select(kept, moved, (words.z & 0xfc020100u) == 0xf8000000u);
+    return select(kept, moved, is_no_glow(words.z));
 }

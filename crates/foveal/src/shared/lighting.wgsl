@@ -131,7 +131,7 @@ fn add_directional(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block_m: f32,
     var arriving = ALL_ARRIVES;
 #ifndef REDUCED
     if SHADOWS != 0u {
-        arriving = directional_arriving(index, light, s.position, s.normal, n_dot_l, block_m);
+        arriving = directional_arriving(index, light, s, block_m);
         if arriving.part <= 0.0 && arriving.variance <= 0.0 {
             return sum;
         }
@@ -150,7 +150,7 @@ fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block_m: f32, index
     var arriving = ALL_ARRIVES;
 #ifndef REDUCED
     if SHADOWS != 0u {
-        arriving = light_arriving(index, light, s.position, s.normal, n_dot_l, block_m);
+        arriving = light_arriving(index, light, s, block_m);
         if arriving.part <= 0.0 && arriving.variance <= 0.0 {
             return sum;
         }

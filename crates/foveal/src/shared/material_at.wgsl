@@ -33,7 +33,8 @@ fn material_at(position: vec3f, normal: vec3f, tangent: vec4f, uv: vec4f, color:
         metallic *= texel.b;
     }
     let facing = select(-1.0, 1.0, front);
-    var n = normalize(normal) * facing;
+    let vertex_normal = normalize(normal) * facing;
+    var n = vertex_normal;
     if (MATERIAL_CLASS & HAS_NORMAL) != 0u {
         var texel = sample_material(normal_texture, normal_sampler, 2u, uv).xyz * 2.0 - 1.0;
         if (MATERIAL_CLASS & NORMAL_OF_TWO) != 0u {
@@ -76,8 +77,10 @@ fn material_at(position: vec3f, normal: vec3f, tangent: vec4f, uv: vec4f, color:
     }
     if (MATERIAL_CLASS & IS_UNLIT) != 0u {
         // Black to all light, at all angles: what is left is the colour itself.
-        return Shaded(Surface(position, n, vec3f(0.0), 0.0, 1.0, 0.0, base.rgb, vec4f(0.0)), base.a);
+        return Shaded(Surface(position, n, n, vec3f(0.0), 0.0, 1.0, 0.0, base.rgb, vec4f(0.0)), base.a);
     }
-    let s = Surface(position, n, base.rgb, saturate(metallic), saturate(roughness), occlusion, emissive, dielectric);
+    metallic = saturate(metallic);
+    roughness = saturate(roughness);
+    let s = Surface(position, n, vertex_normal, base.rgb, metallic, roughness, occlusion, emissive, dielectric);
     return Shaded(s, base.a);
 }

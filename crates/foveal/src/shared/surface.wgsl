@@ -9,6 +9,8 @@ struct Surface {
     position: vec3f,
     // Unit, world space, turned to the viewer.
     normal: vec3f,
+    // The same without what a normal map or lumps bend it by: as vertices have it.
+    vertex_normal: vec3f,
     base_color: vec3f,
     metallic: f32,
     // Perceptual.
@@ -27,6 +29,9 @@ const PLAIN_DIELECTRIC: vec4f = vec4f(0.04, 0.04, 0.04, 1.0);
 const MIRRORED: u32 = 1u << 28u;
 // In the last word of a packed surface: the dielectric is not the plain one.
 const OWN_DIELECTRIC: u32 = 1u << 29u;
+// In the last word of a packed surface whose dielectric is the plain one: a vertex normal lies below,
+// where averages have bits of the base colour.
+const OWN_VERTEX_NORMAL: u32 = 1u << 30u;
 
 fn sign_not_zero(v: vec2f) -> vec2f {
     return select(vec2f(-1.0), vec2f(1.0), v >= vec2f(0.0));
@@ -111,9 +116,32 @@ fn dielectric_of(words: vec4u) -> u32 {
         | (((words.y >> 16u) & 15u) << 18u);
 }
 
+// Above this cosine between them the normal is as near to the vertex normal as its bits are.
+const HARDLY_BENT: f32 = 0.999;
+
+// A vertex normal in 2 x 6 bits.
+fn vertex_normal_bits(n: vec3f) -> vec2u {
+    return vec2u(octahedral_from_unit(n) * 31.0 + 31.5);
+}
+
+fn vertex_normal_from_bits(bits: vec2u) -> vec3f {
+    return unit_from_octahedral(vec2f(bits & vec2u(63u)) / 31.0 - 1.0);
+}
+
+// Beside a dielectric a vertex normal lies in the emissive of what does not glow, as what emission
+// never gives: the largest exponent with small numbers.
+fn glow_of_vertex_normal(bits: vec2u) -> u32 {
+    return (31u << 27u) | bits.x | (bits.y << 9u);
+}
+
+// Exponent 31, and each channel's highest bit 0.
+fn is_no_glow(word: u32) -> bool {
+    return (word & 0xfc020100u) == 0xf8000000u;
+}
+
 // x: base colour (square roots, 8 bits each) and occlusion; y: normal; z: emissive; w: metallic,
-// roughness, and 4 more bits of each base colour and `MIRRORED`, which only an average has, or the
-// dielectric.
+// roughness, and one of these: 4 more bits of each base colour and `MIRRORED`, which only an average
+// has; the vertex normal, where the normal is another; the dielectric.
 fn pack_surface(s: Surface) -> vec4u {
     let words = vec4u(
         pack4x8unorm(vec4f(sqrt(saturate(s.base_color)), s.occlusion)),
@@ -121,24 +149,34 @@ fn pack_surface(s: Surface) -> vec4u {
         pack_shared_exponent(s.emissive),
         pack4x8unorm(vec4f(s.metallic, s.roughness, 0.0, 0.0)),
     );
+    let is_bent = dot(s.vertex_normal, s.normal) < HARDLY_BENT;
+    let bits = vertex_normal_bits(s.vertex_normal);
+    let above = OWN_VERTEX_NORMAL | (bits.x << 16u) | (bits.y << 22u);
+    var own = with_dielectric(words, s.normal, dielectric_bits(s.dielectric));
+    own.z = select(words.z, glow_of_vertex_normal(bits), is_bent & (words.z == 0u));
     // No branch: both may come from uniforms alone.
     let plain = all(s.dielectric == PLAIN_DIELECTRIC) | (s.metallic == 1.0);
-    return select(with_dielectric(words, s.normal, dielectric_bits(s.dielectric)), words, plain);
+    return select(own, vec4u(words.xyz, words.w | select(0u, above, is_bent)), plain);
 }
 
 fn unpack_surface(words: vec4u, position: vec3f) -> Surface {
     let own = (words.w & OWN_DIELECTRIC) != 0u;
+    let is_above = !own & ((words.w & OWN_VERTEX_NORMAL) != 0u);
+    let in_glow = own & is_no_glow(words.z);
     let finer = vec3f((vec3u(words.w) >> vec3u(16u, 20u, 24u)) & vec3u(15u)) / 4080.0;
-    let color = unpack4x8unorm(words.x) + vec4f(select(finer, vec3f(0.0), own), 0.0);
+    let color = unpack4x8unorm(words.x) + vec4f(select(finer, vec3f(0.0), own | is_above), 0.0);
     let material = unpack4x8unorm(words.w);
+    let normal = unit_from_octahedral(select(unpack2x16snorm(words.y), normal_from_coarse_bits(words.y), own));
+    let bits = select(vec2u(words.w) >> vec2u(16u, 22u), vec2u(words.z) >> vec2u(0u, 9u), in_glow);
     return Surface(
         position,
-        unit_from_octahedral(select(unpack2x16snorm(words.y), normal_from_coarse_bits(words.y), own)),
+        normal,
+        select(normal, vertex_normal_from_bits(bits), is_above | in_glow),
         color.rgb * color.rgb,
         material.x,
         material.y,
         select(color.a, -color.a, (words.w & MIRRORED) != 0u),
-        unpack_shared_exponent(words.z),
+        select(unpack_shared_exponent(words.z), vec3f(0.0), in_glow),
         select(PLAIN_DIELECTRIC, dielectric_from_bits(dielectric_of(words)), own),
     );
 }

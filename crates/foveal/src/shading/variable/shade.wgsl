@@ -33,6 +33,8 @@ fn shade_together(first: vec2u, last: vec2u) -> vec4f {
         let other = unpack_surface(load_words(gbuffer_surface, last), vec3f(0.0));
         let single = all(first == last);
         surface.normal = select(normalize(surface.normal + other.normal), surface.normal, single);
+        let vertex_normal = normalize(surface.vertex_normal + other.vertex_normal);
+        surface.vertex_normal = select(vertex_normal, surface.vertex_normal, single);
         surface.base_color = 0.5 * (surface.base_color + other.base_color);
         surface.metallic = 0.5 * (surface.metallic + other.metallic);
         surface.roughness = 0.5 * (surface.roughness + other.roughness);
