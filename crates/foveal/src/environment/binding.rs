@@ -28,10 +28,16 @@ impl EnvironmentBinding {
     ];
 
     /// Uploads a map; without one a single black texel a side stands for it.
-    pub(crate) fn new(gpu: &Gpu, ToBind { map, albedos }: ToBind<'_>) -> Self {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        ToBind {
+            map,
+            reflectances: is_used,
+        }: ToBind<'_>,
+    ) -> Self {
         Self {
             map: cube_map(gpu, map),
-            reflectances: reflectances(gpu, albedos || map.is_some(), albedos),
+            reflectances: reflectances(gpu, is_used),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("environment"),
                 mag_filter: wgpu::FilterMode::Linear,
@@ -75,8 +81,8 @@ fn cube_map(gpu: &Gpu, map: Option<&EnvironmentMap>) -> wgpu::TextureView {
     })
 }
 
-/// The table; a single texel where nothing looks it up. `has_albedos`: with those of one bounce.
-fn reflectances(gpu: &Gpu, is_used: bool, has_albedos: bool) -> wgpu::TextureView {
+/// The table; a single texel where nothing looks it up.
+fn reflectances(gpu: &Gpu, is_used: bool) -> wgpu::TextureView {
     let side = if is_used { reflectance::SIDE as u32 } else { 1 };
     let size = wgpu::Extent3d {
         width: side,
@@ -86,15 +92,8 @@ fn reflectances(gpu: &Gpu, is_used: bool, has_albedos: bool) -> wgpu::TextureVie
     let format = wgpu::TextureFormat::Rgba16Float;
     let texture = texture(gpu, "reflectances", size, 1, format);
     if is_used {
-        let albedos = has_albedos.then(reflectance::albedos).unwrap_or_default();
-        let albedos = albedos.iter().copied().chain(std::iter::repeat(0.0));
-        let halves =
-            |(&[a, b, c], d): (&[f32; 3], f32)| [a, b, c, d].map(|v| f16::from_f32(v).to_bits());
-        let texels: Vec<[u16; 4]> = reflectance::table()
-            .iter()
-            .zip(albedos)
-            .map(halves)
-            .collect();
+        let halves = |&[a, b, c]: &[f32; 3]| [a, b, c, 0.0].map(|v| f16::from_f32(v).to_bits());
+        let texels: Vec<[u16; 4]> = reflectance::table().iter().map(halves).collect();
         write(gpu, texture.as_image_copy(), size, &texels);
     }
     texture.create_view(&Default::default())

@@ -5,7 +5,7 @@ use foveal_scene::{Camera, Scene};
 use glam::{Vec2, Vec3};
 
 use super::EnvironmentMap;
-use super::reflectance::{looked_up, looked_up_albedo};
+use super::reflectance::looked_up;
 use super::tests::reflected_part;
 use super::twin::Around;
 use crate::shading::dielectric::PLAIN_DIELECTRIC;
@@ -28,8 +28,8 @@ fn once(s: &Surface, v: Vec3) -> Vec3 {
 
 /// `further_bounces` in `shared/environment.wgsl`.
 fn gain(s: &Surface, v: Vec3) -> Vec3 {
-    let albedo = looked_up_albedo(s.normal.dot(v).clamp(0.0, 1.0), s.roughness);
-    1.0 + s.reflectance_at_normal() * (1.0 / albedo - 1.0)
+    let terms = entry(s, v);
+    1.0 + s.reflectance_at_normal() * (1.0 / (terms.x + terms.y) - 1.0)
 }
 
 /// `reflected_further` in `shared/environment.wgsl`.

@@ -12,7 +12,7 @@ use glam::Vec3;
 /// Entries along each axis.
 pub(super) const SIDE: usize = 32;
 
-/// Samples per entry.
+/// Samples per entry of what is scattered.
 const SAMPLES: u32 = 512;
 
 /// The base-2 radical inverse.
@@ -37,29 +37,46 @@ pub(super) fn density(cos2: f32, a2: f32) -> f32 {
     a2 / (PI * d * d) / 4.0
 }
 
-/// A mirror whose reflectance at right angles is f0 reflects f0 times the first, plus the second,
-/// and leaves 1 - f0 times the third for diffuse reflection.
+/// Samples per entry of what is mirrored, along each of two axes.
+const MIRRORED_SAMPLES: u32 = 32;
+
+/// A mirror whose reflectance at right angles is f0 reflects f0 times the first, plus the second, in
+/// one bounce, and leaves 1 - f0 times the third for diffuse reflection. The first two together are
+/// what it reflects where nothing is absorbed. By visible normals (Heitz 2018, 'Sampling the GGX
+/// Distribution of Visible Normals').
 fn entry(cosine: f32, roughness: f32) -> [f32; 3] {
-    let a2 = (roughness * roughness).max(0.002).powi(2);
-    let v = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+    let alpha = (roughness * roughness).max(0.002);
+    let a2 = alpha * alpha;
+    let cosine = cosine.max(1e-3);
+    let v = Vec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
+    let stretched = (v * Vec3::new(alpha, alpha, 1.0)).normalize();
+    let across = Vec3::Y;
+    let up = stretched.cross(across);
+    let slanted = |cosine: f32| (cosine * cosine * (1.0 - a2) + a2).sqrt();
     let (mut scale, mut bias) = (0.0, 0.0);
-    for i in 0..SAMPLES {
-        let (h, _) = half_vector(i, SAMPLES, a2);
+    for i in 0..MIRRORED_SAMPLES * MIRRORED_SAMPLES {
+        let at = |i: u32| (i as f32 + 0.5) / MIRRORED_SAMPLES as f32;
+        let radius = at(i % MIRRORED_SAMPLES).sqrt();
+        let (sin, cos) = (TAU * at(i / MIRRORED_SAMPLES)).sin_cos();
+        let x = radius * cos;
+        let part = 0.5 * (1.0 + stretched.z);
+        let y = (1.0 - part) * (1.0 - x * x).sqrt() + part * radius * sin;
+        let z = (1.0 - x * x - y * y).max(0.0).sqrt();
+        let n = across * x + up * y + stretched * z;
+        let h = Vec3::new(alpha * n.x, alpha * n.y, n.z.max(1e-6)).normalize();
         let v_dot_h = v.dot(h);
-        let l_z = 2.0 * v_dot_h * h.z - v.z;
-        if l_z <= 0.0 || v_dot_h <= 0.0 {
-            continue;
+        let l = 2.0 * v_dot_h * h.z - v.z;
+        if l > 0.0 {
+            // Masking and shadowing together, over masking alone.
+            let reflected =
+                l * (cosine + slanted(cosine)) / (l * slanted(cosine) + cosine * slanted(l));
+            let fresnel = (1.0 - v_dot_h).max(0.0).powi(5);
+            scale += reflected * (1.0 - fresnel);
+            bias += reflected * fresnel;
         }
-        // As in `ggx_lobe`, the distribution aside.
-        let visibility = 0.5
-            / (l_z * (cosine * cosine * (1.0 - a2) + a2).sqrt()
-                + cosine * (l_z * l_z * (1.0 - a2) + a2).sqrt());
-        let reflected = 4.0 * visibility * l_z * v_dot_h / h.z;
-        let fresnel = (1.0 - v_dot_h).powi(5);
-        scale += reflected * (1.0 - fresnel);
-        bias += reflected * fresnel;
     }
-    [scale, bias, scattered(v)].map(|sum| sum / SAMPLES as f32)
+    let mirrored = [scale, bias].map(|sum| sum / (MIRRORED_SAMPLES * MIRRORED_SAMPLES) as f32);
+    [mirrored[0], mirrored[1], scattered(v)]
 }
 
 /// Sum over light from everywhere of what Fresnel's reflection leaves, where f0 is 0.
@@ -72,84 +89,26 @@ fn scattered(v: Vec3) -> f32 {
         let v_dot_h = v.dot((v + l).normalize());
         1.0 - (1.0 - v_dot_h).powi(5)
     };
-    (0..SAMPLES).map(sample).sum()
+    (0..SAMPLES).map(sample).sum::<f32>() / SAMPLES as f32
 }
 
-/// The table: cosines between normal and view across, roughness down, at the entries' centres.
+/// The table: cosines between normal and view across, roughness down, both from 0 in the first entry
+/// to 1 in the last.
 pub(super) fn table() -> &'static [[f32; 3]] {
     static TABLE: OnceLock<Vec<[f32; 3]>> = OnceLock::new();
     TABLE.get_or_init(|| {
-        let center = |i: usize| (i as f32 + 0.5) / SIDE as f32;
-        (0..SIDE * SIDE)
-            .map(|i| entry(center(i % SIDE), center(i / SIDE)))
-            .collect()
-    })
-}
-
-/// Samples per entry of [`albedos`], along each of two axes.
-const ALBEDO_SAMPLES: u32 = 32;
-
-/// Part of light from everywhere that GGX reflects in one bounce where nothing is absorbed, by visible
-/// normals (Heitz 2018, 'Sampling the GGX Distribution of Visible Normals').
-fn albedo(cosine: f32, roughness: f32) -> f32 {
-    let alpha = (roughness * roughness).max(0.002);
-    let a2 = alpha * alpha;
-    let cosine = cosine.max(1e-3);
-    let v = Vec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
-    let stretched = (v * Vec3::new(alpha, alpha, 1.0)).normalize();
-    let across = Vec3::Y;
-    let up = stretched.cross(across);
-    let slanted = |cosine: f32| (cosine * cosine * (1.0 - a2) + a2).sqrt();
-    let mut sum = 0.0;
-    for i in 0..ALBEDO_SAMPLES * ALBEDO_SAMPLES {
-        let at = |i: u32| (i as f32 + 0.5) / ALBEDO_SAMPLES as f32;
-        let radius = at(i % ALBEDO_SAMPLES).sqrt();
-        let (sin, cos) = (TAU * at(i / ALBEDO_SAMPLES)).sin_cos();
-        let x = radius * cos;
-        let part = 0.5 * (1.0 + stretched.z);
-        let y = (1.0 - part) * (1.0 - x * x).sqrt() + part * radius * sin;
-        let z = (1.0 - x * x - y * y).max(0.0).sqrt();
-        let n = across * x + up * y + stretched * z;
-        let h = Vec3::new(alpha * n.x, alpha * n.y, n.z.max(1e-6)).normalize();
-        let l = 2.0 * v.dot(h) * h.z - v.z;
-        if l > 0.0 {
-            // Masking and shadowing together, over masking alone.
-            sum += l * (cosine + slanted(cosine)) / (l * slanted(cosine) + cosine * slanted(l));
-        }
-    }
-    sum / (ALBEDO_SAMPLES * ALBEDO_SAMPLES) as f32
-}
-
-/// Albedos of one bounce: cosines between normal and view across, roughness down, both from 0 in the
-/// first entry to 1 in the last.
-pub(super) fn albedos() -> &'static [f32] {
-    static TABLE: OnceLock<Vec<f32>> = OnceLock::new();
-    TABLE.get_or_init(|| {
         let at = |i: usize| i as f32 / (SIDE - 1) as f32;
         (0..SIDE * SIDE)
-            .map(|i| albedo(at(i % SIDE), at(i / SIDE)))
+            .map(|i| entry(at(i % SIDE), at(i / SIDE)))
             .collect()
     })
-}
-
-/// The albedo between the entries, as shaders look it up.
-#[cfg(test)]
-pub(super) fn looked_up_albedo(cosine: f32, roughness: f32) -> f32 {
-    let last = (SIDE - 1) as f32;
-    let at = Vec2::new(cosine, roughness) * last;
-    let low = at.floor().min(Vec2::splat(last - 1.0));
-    let f = at - low;
-    let entry = |x: f32, y: f32| albedos()[y as usize * SIDE + x as usize];
-    let row = |y: f32| entry(low.x, y) * (1.0 - f.x) + entry(low.x + 1.0, y) * f.x;
-    row(low.y) * (1.0 - f.y) + row(low.y + 1.0) * f.y
 }
 
 /// The table's entry between the entries, as shaders look it up.
 #[cfg(test)]
 pub(super) fn looked_up(cosine: f32, roughness: f32) -> Vec3 {
     let last = (SIDE - 1) as f32;
-    let at =
-        (Vec2::new(cosine, roughness) * SIDE as f32 - 0.5).clamp(Vec2::ZERO, Vec2::splat(last));
+    let at = Vec2::new(cosine, roughness) * last;
     let low = at.floor().min(Vec2::splat(last - 1.0));
     let f = at - low;
     let entry = |x: f32, y: f32| Vec3::from(table()[y as usize * SIDE + x as usize]);

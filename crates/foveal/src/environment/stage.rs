@@ -15,8 +15,8 @@ pub(crate) struct EnvironmentStage {
     /// The last scene's own environment, filtered.
     own: Option<(ImageLight, EnvironmentMap)>,
     in_use: Option<EnvironmentMap>,
-    /// Albedos of one bounce are bound.
-    has_albedos: bool,
+    /// The table of reflectances is bound.
+    has_reflectances: bool,
 }
 
 /// What a frame's uniform block has to say of the environment.
@@ -32,8 +32,8 @@ pub(crate) struct EnvironmentTerms<'a> {
 pub(crate) struct ToBind<'a> {
     /// Without one, a black one.
     pub(crate) map: Option<&'a EnvironmentMap>,
-    /// Whether albedos of one bounce are looked up.
-    pub(crate) albedos: bool,
+    /// Whether reflectances are looked up.
+    pub(crate) reflectances: bool,
 }
 
 /// A choice that is not in force yet.
@@ -87,17 +87,17 @@ impl EnvironmentStage {
             (Some(a), Some(b)) => a.is_same(b),
             _ => false,
         };
-        let wants_albedos = settings.lighting.multiple_scattering;
-        let lacks_albedos = wants_albedos && !self.has_albedos;
+        let wants_table = settings.lighting.multiple_scattering || in_use.is_some();
+        let lacks_table = wants_table && !self.has_reflectances;
         ChosenEnvironment {
-            is_new: !is_same || lacks_albedos,
+            is_new: !is_same || lacks_table,
             stage: Self {
                 image,
                 sky: filtered,
                 own: filtered_own,
                 in_use,
                 // What is bound stays.
-                has_albedos: wants_albedos || is_same && self.has_albedos,
+                has_reflectances: wants_table || is_same && self.has_reflectances,
             },
         }
     }
@@ -119,7 +119,7 @@ impl EnvironmentStage {
     pub(crate) fn to_bind(&self) -> ToBind<'_> {
         ToBind {
             map: self.map(),
-            albedos: self.has_albedos,
+            reflectances: self.has_reflectances,
         }
     }
 

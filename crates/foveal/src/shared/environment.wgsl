@@ -25,10 +25,10 @@ const PI: f32 = 3.14159265;
 
 // Level 0: radiance; the others: what rougher and rougher mirrors reflect of it.
 @group(0) @binding(3) var environment_map: texture_cube<f32>;
-// What a mirror reflects of light that comes from everywhere alike: the reflectance at right angles
-// times the first, plus the second; what it leaves is 1 minus that reflectance, times the third. By
-// the cosine between normal and view, and the roughness. In w what GGX reflects of it in one bounce
-// where nothing is absorbed, at entries from 0 to 1.
+// What a mirror reflects of light that comes from everywhere alike, in one bounce: the reflectance at
+// right angles times the first, plus the second; what it leaves is 1 minus that reflectance, times the
+// third. By the cosine between normal and view, and the roughness, both from 0 in the first entry to 1
+// in the last.
 @group(0) @binding(4) var environment_reflectances: texture_2d<f32>;
 @group(0) @binding(5) var environment_sampler: sampler;
 #ifndef REDUCED
@@ -183,9 +183,9 @@ fn environment_reflectance(s: Surface, v: vec3f) -> vec3f {
     return f0 * scale_bias.x + scale_bias.y * reflectance_at_grazing(s);
 }
 
-// The table's entry for a surface.
+// The table's entry for a surface: from the first one's centre to the last one's.
 fn reflectance_terms(s: Surface, v: vec3f) -> vec3f {
-    let at = vec2f(saturate(dot(s.normal, v)), s.roughness);
+    let at = (vec2f(saturate(dot(s.normal, v)), s.roughness) * 31.0 + 0.5) / 32.0;
     return textureSampleLevel(environment_reflectances, environment_sampler, at, 0.0).xyz;
 }
 
@@ -198,10 +198,10 @@ fn reflected_once(s: Surface, terms: vec3f) -> vec3f {
 // By how much bounces after the first brighten what a rough mirror shows of a light: a white one
 // reflects all (Turquin 2019, 'Practical multiple scattering compensation for microfacet models').
 fn further_bounces(s: Surface, v: vec3f) -> vec3f {
-    // From the first entry's centre to the last one's.
-    let at = (vec2f(saturate(dot(s.normal, v)), s.roughness) * 31.0 + 0.5) / 32.0;
-    let albedo = textureSampleLevel(environment_reflectances, environment_sampler, at, 0.0).w;
-    return 1.0 + reflectance_at_normal(s) * (1.0 / max(albedo, 0.05) - 1.0);
+    let terms = reflectance_terms(s, v);
+    // Of a mirror that absorbs nothing.
+    let once = terms.x + terms.y;
+    return 1.0 + reflectance_at_normal(s) * (1.0 / max(once, 0.05) - 1.0);
 }
 
 // What bounces after the first reflect of light that comes from everywhere alike (Fdez-Aguera 2019, 'A
