@@ -72,7 +72,7 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
         if MIRROR {
             let v = direction_to_eye(view_at(at), s.position);
             let seen = mirrored_seen(s, v, environment_seen(at, view_distance(sample_depth)));
-            sum.emissive += s.occlusion * environment_specular(s, v) * seen;
+            sum.emissive += s.occlusion * environment_specular(s, v, environment_look(s, v, false)) * seen;
         }
         depth += sample_depth;
         position += at;

@@ -50,19 +50,21 @@ fn join(@builtin(global_invocation_id) id: vec3u) {
         textureStore(radiance, texel, vec4f(sample_of(own).rgb, 1.0));
         return;
     }
+    let is_behind = depth == 0.0;
     // Of the backdrop any distance will do.
-    let position = world_position(pixel, select(view_distance(depth), 1.0, depth == 0.0));
+    let position = world_position(pixel, select(view_distance(depth), 1.0, is_behind));
     let v = direction_to_eye(view_at(pixel), position);
-    if depth == 0.0 {
-        textureStore(radiance, texel, vec4f(background(-v), 1.0));
+    let s = unpack_surface(load_words(gbuffer_surface, texel), position);
+    let look = environment_look(s, v, is_behind);
+    if is_behind {
+        textureStore(radiance, texel, vec4f(background(look), 1.0));
         return;
     }
-    let s = unpack_surface(load_words(gbuffer_surface, texel), position);
     let by = light_factors(s, v);
     let found = gather(texel, own, s, by, v, depth);
     let seen = environment_seen(pixel, view_distance(depth));
     let lights = reflected(by, found.diffuse, found.specular) / found.weight;
-    let other = s.emissive + ambient(s, v, seen);
+    let other = s.emissive + ambient(s, v, seen, look);
     if is_unsure(found, lights, other) {
         unlit[atomicAdd(&counts[0], 1u)] = texel.x | (texel.y << 16u);
         return;

@@ -130,12 +130,12 @@ fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) v
     // glTF 2.0, section 3.9.7: without normals, the sum of base colour and emission.
     var light = m.surface.base_color + m.surface.emissive;
     if LIT {
-        light = select(light, lit(m.surface, pixel, distance), any(in.normal != vec3f(0.0)));
+        light = select(light, radiance_of(m.surface, pixel, distance, false), any(in.normal != vec3f(0.0)));
     }
     let radiance = min(light, vec3f(65504.0));
     let alpha = select(saturate(m.alpha), 1.0, OPAQUE);
 #else
-    let radiance = min(lit(m.surface, pixel, distance), vec3f(65504.0));
+    let radiance = radiance_of(m.surface, pixel, distance, false);
     let alpha = saturate(m.alpha);
 #endif
 #endif

@@ -349,7 +349,7 @@ fn lobes_ambient(s: LobedSurface, v: vec3f, left: f32, seen: f32) -> vec3f {
         mirror.normal = normalize(select(s.base.normal, turned, s.anisotropy > 0.0));
     }
     var below = (1.0 - s.transmission) * environment_diffuse(scattering, v) * seen
-        + environment_specular(mirror, v) * mirrored_seen(mirror, v, seen);
+        + environment_specular(mirror, v, environment_look(mirror, v, false)) * mirrored_seen(mirror, v, seen);
     if (MATERIAL_CLASS & HAS_SHEEN) != 0u {
         let cosine = saturate(dot(s.base.normal, v));
         let around = Surface(
@@ -360,7 +360,8 @@ fn lobes_ambient(s: LobedSurface, v: vec3f, left: f32, seen: f32) -> vec3f {
     }
     var sum = left * below;
     if (MATERIAL_CLASS & HAS_CLEARCOAT) != 0u {
-        sum += s.clearcoat * environment_specular(s.coat, v) * mirrored_seen(s.coat, v, seen);
+        let coat = environment_specular(s.coat, v, environment_look(s.coat, v, false));
+        sum += s.clearcoat * coat * mirrored_seen(s.coat, v, seen);
     }
     return sum * s.base.occlusion;
 }

@@ -79,24 +79,26 @@ fn environment(direction: vec3f, roughness: f32) -> vec3f {
     return vec3f(0.0);
 }
 
-// What a mirror of this roughness shows of the environment, within what a half can hold.
-fn behind(direction: vec3f, roughness: f32) -> vec3f {
-    let radiance = environment(direction, roughness);
-    if ENVIRONMENT == ENVIRONMENT_MAP {
-        return min(radiance, vec3f(65504.0));
-    }
-    return radiance;
+// Where a surface mirrors the environment from, a unit vector.
+fn mirrored_direction(s: Surface, v: vec3f) -> vec3f {
+    return normalize(mix(reflect(-v, s.normal), s.normal, s.roughness * s.roughness));
 }
 
-// Radiance behind all surfaces, in the unit direction of a ray from the eye.
-fn background(direction: vec3f) -> vec3f {
-    if BACKGROUND == BACKGROUND_SHARP {
-        return behind(direction, 0.0);
+// A look at the environment: in a surface, or, where `is_behind`, behind all surfaces, in the direction
+// from the eye that `v` is opposite to. One look for both: where all branches are run each would cost.
+fn environment_look(s: Surface, v: vec3f, is_behind: bool) -> vec3f {
+    let background_roughness = select(0.0, BLURRED_ROUGHNESS, BACKGROUND == BACKGROUND_BLURRED);
+    let roughness = select(s.roughness, background_roughness, is_behind);
+    return environment(select(mirrored_direction(s, v), -v, is_behind), roughness);
+}
+
+// Radiance behind all surfaces, by a look there.
+fn background(look: vec3f) -> vec3f {
+    if BACKGROUND != BACKGROUND_SHARP && BACKGROUND != BACKGROUND_BLURRED {
+        return vec3f(0.0);
     }
-    if BACKGROUND == BACKGROUND_BLURRED {
-        return behind(direction, BLURRED_ROUGHNESS);
-    }
-    return vec3f(0.0);
+    // What a half can hold.
+    return min(look, vec3f(65504.0));
 }
 
 // Irradiance of the map over pi (Ramamoorthi and Hanrahan 2001).
@@ -225,20 +227,19 @@ fn environment_around(normal: vec3f) -> vec3f {
     return vec3f(0.0);
 }
 
-// The environment's light in a rough mirror.
-fn environment_specular(s: Surface, v: vec3f) -> vec3f {
-    let mirror = mix(reflect(-v, s.normal), s.normal, s.roughness * s.roughness);
+// The environment's light in a rough mirror, by a look into it.
+fn environment_specular(s: Surface, v: vec3f, look: vec3f) -> vec3f {
     if MULTIPLE_SCATTERING {
         let terms = reflectance_terms(s, v);
-        let once = reflected_once(s, terms) * environment(normalize(mirror), s.roughness);
+        let once = reflected_once(s, terms) * look;
         return once + reflected_further(s, terms) * environment_around(s.normal);
     }
     if ENVIRONMENT == ENVIRONMENT_MAP {
         let terms = reflectance_terms(s, v);
         let reflected = reflectance_at_normal(s) * terms.x + terms.y * reflectance_at_grazing(s);
-        return reflected * environment(normalize(mirror), s.roughness);
+        return reflected * look;
     }
-    return environment_reflectance(s, v) * environment(normalize(mirror), s.roughness);
+    return environment_reflectance(s, v) * look;
 }
 
 // What a surface scatters of the environment's light.
@@ -297,9 +298,9 @@ fn mirrored_seen(s: Surface, v: vec3f, seen: f32) -> f32 {
     return saturate(pow(n_dot_v + seen, exp2(-16.0 * s.roughness * s.roughness - 1.0)) - 1.0 + seen);
 }
 
-// The environment's light, of which `seen` reaches the surface.
-fn ambient(s: Surface, v: vec3f, seen: f32) -> vec3f {
+// The environment's light, of which `seen` reaches the surface, by a look into it.
+fn ambient(s: Surface, v: vec3f, seen: f32, look: vec3f) -> vec3f {
     let diffuse = environment_diffuse(s, v) * seen;
-    let specular = environment_specular(s, v) * mirrored_seen(s, v, seen);
+    let specular = environment_specular(s, v, look) * mirrored_seen(s, v, seen);
     return (diffuse + select(specular, vec3f(0.0), s.occlusion < 0.0)) * abs(s.occlusion);
 }

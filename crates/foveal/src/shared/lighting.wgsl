@@ -261,16 +261,16 @@ fn light_of(walk: LightWalk) -> Light {
 }
 
 // Radiance that leaves a surface towards the eye, and the lights' light that it comes from. `block_m`:
-// metres that the sample's block is wide; 0 for a pixel, which has no variance.
+// metres that the sample's block is wide; 0 for a pixel, which has no variance. `look`: into the
+// surface.
 //
 // Lights are summed in ascending order whichever way they are found, so that clustered and brute agree
 // to the bit. Directional ones have a loop of their own: a device that runs all branches would look up
 // both kinds' shadows for each light. The loop over the others asks at its end: such a device runs
 // the body of a loop once for its last question, too.
-fn light_surface(s: Surface, pixel: vec2f, distance: f32, block_m: f32) -> Lit {
-    let v = direction_to_eye(view_at(pixel), s.position);
+fn light_surface(s: Surface, v: vec3f, look: vec3f, pixel: vec2f, distance: f32, block_m: f32) -> Lit {
     let seen = environment_seen(pixel, distance);
-    var sum = Lit(s.emissive + ambient(s, v, seen), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0);
+    var sum = Lit(s.emissive + ambient(s, v, seen, look), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0);
     var mirror = mirror_of(s);
     if MULTIPLE_SCATTERING {
         mirror.gain = further_bounces(s, v);
@@ -292,7 +292,13 @@ fn light_surface(s: Surface, pixel: vec2f, distance: f32, block_m: f32) -> Lit {
     return sum;
 }
 
-// Radiance that leaves a surface towards the eye.
-fn lit(s: Surface, pixel: vec2f, distance: f32) -> vec3f {
-    return light_surface(s, pixel, distance, 0.0).radiance;
+// Radiance of a pixel: what leaves a surface towards the eye, or is behind all surfaces.
+fn radiance_of(s: Surface, pixel: vec2f, distance: f32, is_behind: bool) -> vec3f {
+    let v = direction_to_eye(view_at(pixel), s.position);
+    let look = environment_look(s, v, is_behind);
+    if is_behind {
+        return background(look);
+    }
+    // The largest half: brighter would become infinite in the target.
+    return min(light_surface(s, v, look, pixel, distance, 0.0).radiance, vec3f(65504.0));
 }

@@ -63,10 +63,8 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
     let texel = sample_texel(block, level, candidate);
     let pixel = vec2f(texel) + 0.5;
     let depth = gbuffer_depth_at(texel);
-    if depth == 0.0 {
-        return LitBlock(vec4f(radiance_at(pixel, depth, vec4u(0u)).rgb, alpha), vec4u(0u));
-    }
-    let distance = view_distance(depth);
+    let is_behind = depth == 0.0;
+    let distance = select(view_distance(depth), 1.0, is_behind);
     var s = unpack_surface(gbuffer_words_at(texel), world_position(pixel, distance));
     var roughness = s.roughness;
     let block_m = select(0.0, pixel_width_at(view_at(pixel), distance) * f32(1u << level), level > 0u);
@@ -75,8 +73,12 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
         s = filtered.surface;
         roughness = filtered.roughness;
     }
-    let lit = light_surface(s, pixel, distance, block_m);
     let v = direction_to_eye(view_at(pixel), s.position);
+    let look = environment_look(s, v, is_behind);
+    if is_behind {
+        return LitBlock(vec4f(background(look), alpha), vec4u(0u));
+    }
+    let lit = light_surface(s, v, look, pixel, distance, block_m);
     let direction = unit_or(lit.direction, s.normal);
     let specular_direction = unit_or(lit.specular_direction, s.normal);
     let together = saturate(length(lit.specular_direction) / max(luminance(lit.specular), 1e-30));

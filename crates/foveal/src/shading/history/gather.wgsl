@@ -55,7 +55,7 @@ fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     let mirror = found.specular / found.weight;
     let lights = reflected(by, diffuse, mirror);
     let seen = environment_seen(pixel, view_distance(depth));
-    let other = s.emissive + ambient(s, v, seen);
+    let other = s.emissive + ambient(s, v, seen, environment_look(s, v, false));
     if is_unsure(found, lights, other) {
         unlit[atomicAdd(&listed[UNLIT].count, 1u)] = vec2u(sample_entry(texel, 0u), 0u);
         textureStore(gathered, texel, vec4u(0u));

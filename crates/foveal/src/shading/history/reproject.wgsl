@@ -174,12 +174,12 @@ fn remember(before: vec2f, texel: vec2u, picture: Picture, expected: Expected, p
     return memory;
 }
 
-// What a surface shows of the light that is kept, and of the environment.
-fn radiance_of(light: SampleLight, s: Surface, v: vec3f, reaching: f32) -> vec3f {
+// What a surface shows of the light that is kept, and of the environment, by a look into it.
+fn shown_of(light: SampleLight, s: Surface, v: vec3f, reaching: f32, look: vec3f) -> vec3f {
     let diffuse = light.diffuse * max(dot(s.normal, light.direction), LEAST_COSINE);
     let mirror = light.specular * highlight(s.normal, v, light.specular_direction, squared_alpha(s) + light.spread);
     let lamps = reflected(light_factors(s, v), diffuse, mirror);
-    return min(s.emissive + ambient(s, v, reaching) + lamps, vec3f(65504.0));
+    return min(s.emissive + ambient(s, v, reaching, look) + lamps, vec3f(65504.0));
 }
 
 // Whether a pixel's share of its block's samples is due. What proved wrong is renewed sooner.
@@ -205,14 +205,16 @@ fn reprojected(texel: vec2u) -> Reprojected {
         return Reprojected();
     }
     let depth = load_depth(gbuffer_depth, texel);
-    let distance = select(view_distance(depth), 1.0, depth == 0.0);
+    let is_behind = depth == 0.0;
+    let distance = select(view_distance(depth), 1.0, is_behind);
     let position = world_position(pixel, distance);
     let v = direction_to_eye(view_at(pixel), position);
-    if depth == 0.0 {
-        return Reprojected(vec4u(0u), 0u, vec4f(background(-v), 1.0));
+    let s = unpack_surface(load_words(gbuffer_surface, texel), position);
+    let look = environment_look(s, v, is_behind);
+    if is_behind {
+        return Reprojected(vec4u(0u), 0u, vec4f(background(look), 1.0));
     }
     let own = tile_at(texel);
-    let s = unpack_surface(load_words(gbuffer_surface, texel), position);
     let who = load_words(gbuffer_identity, texel).xy;
     let clip_then = clip_before(texel, position);
     let is_orthographic = frame.orthographic != 0u;
@@ -253,7 +255,7 @@ fn reprojected(texel: vec2u) -> Reprojected {
     notes = select(notes, SEEN_OWN, is_shaded);
     notes = select(notes, min(own.level, SEEN_LEVEL) << SEEN_LEVEL_SHIFT, is_bare);
     let seen = (who.x & SEEN_INSTANCE) | SEEN_AT_ALL | distance_bits(distance) | notes;
-    let shown = radiance_of(unpack_light(memory.light), s, v, environment_seen(pixel, distance));
+    let shown = shown_of(unpack_light(memory.light), s, v, environment_seen(pixel, distance), look);
     return Reprojected(memory.light, seen, vec4f(shown, 1.0));
 }
 

@@ -3,7 +3,6 @@
 
 #import shading/input.wgsl
 #import shading/variable/rates.wgsl
-#import shared/environment.wgsl
 #import shared/frame.wgsl
 #import shared/layers.wgsl
 #import shared/lighting.wgsl
@@ -24,10 +23,8 @@ override ONE_SURFACE: bool = false;
 fn shade_together(first: vec2u, last: vec2u) -> vec4f {
     let depth = 0.5 * (load_depth(gbuffer_depth, first) + load_depth(gbuffer_depth, last));
     let pixel = 0.5 * vec2f(first + last) + 0.5;
-    if depth == 0.0 {
-        return vec4f(background(-direction_to_eye(view_at(pixel), world_position(pixel, 1.0))), 1.0);
-    }
-    let distance = view_distance(depth);
+    let is_behind = depth == 0.0;
+    let distance = select(view_distance(depth), 1.0, is_behind);
     var surface = unpack_surface(load_words(gbuffer_surface, first), world_position(pixel, distance));
     if !ONE_SURFACE {
         let other = unpack_surface(load_words(gbuffer_surface, last), vec3f(0.0));
@@ -42,7 +39,7 @@ fn shade_together(first: vec2u, last: vec2u) -> vec4f {
         surface.emissive = 0.5 * (surface.emissive + other.emissive);
         surface.dielectric = 0.5 * (surface.dielectric + other.dielectric);
     }
-    return vec4f(min(lit(surface, pixel, distance), vec3f(65504.0)), 1.0);
+    return vec4f(radiance_of(surface, pixel, distance, is_behind), 1.0);
 }
 
 @compute @workgroup_size(64)
