@@ -7,6 +7,7 @@ mod lines;
 mod mtl;
 mod obj;
 mod ply;
+mod ply_header;
 mod ply_text;
 
 #[cfg(test)]
@@ -70,7 +71,7 @@ impl Format {
             Some(Self::Obj)
         } else if ending.eq_ignore_ascii_case("ply") && !is_gltf
             || bytes.starts_with(b"ply\n")
-            || bytes.starts_with(b"ply\r\n")
+            || bytes.starts_with(b"ply\r")
         {
             Some(Self::Ply)
         } else {

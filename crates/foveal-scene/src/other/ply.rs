@@ -1,5 +1,4 @@
-//! The Stanford polygon format, text or binary. The crate `ply-rs-bw` reads headers and binary
-//! elements.
+//! The Stanford polygon format, text or binary. The crate `ply-rs-bw` reads binary elements.
 
 use std::io::Cursor;
 
@@ -11,31 +10,29 @@ use serde_json::json;
 
 use super::builder::{Builder, plain_surface};
 use super::obj::{LINES, POINTS, TRIANGLES};
-use super::{Converted, Refusal, check_memory, linear, ply_text};
+use super::{Converted, Refusal, check_memory, linear, ply_header, ply_text};
 use crate::error::Limit;
+use crate::gltf::BYTE_ORDER_MARK;
 use crate::{Code, LoadOptions, Warning};
-
-/// Longest line of a header in bytes, and most lines: the parser's work grows with their product.
-const MAX_LINE: usize = 4 << 10;
-const MAX_LINES: usize = 10_000;
 
 /// The mesh as one object; polygons are cut into fans. Without faces its edges become lines, and
 /// without these its vertices points.
 pub(super) fn convert(bytes: &[u8], options: &LoadOptions) -> Result<Converted, Refusal> {
-    check_header(bytes)?;
-    let mut reader = Reader::new(Cursor::new(bytes));
-    let header = Parser::<Skipped>::new()
-        .read_header(&mut reader)
-        .map_err(|error| short(&error))?;
-    check_counts(&header, bytes.len(), options)?;
+    let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
+    let found = ply_header::read(bytes)?;
+    let header = &found.header;
+    check_counts(header, bytes.len(), options)?;
+    let mut rest = Cursor::new(bytes);
+    rest.set_position(found.length as u64);
+    let mut reader = Reader::new(rest);
     let (mut vertices, mut faces, mut edges) = (Vec::new(), Vec::new(), Vec::new());
     for (name, element) in &header.elements {
         match name.as_str() {
-            "vertex" => vertices = elements(&mut reader, element, &header)?,
-            "face" => faces = elements(&mut reader, element, &header)?,
-            "edge" => edges = elements(&mut reader, element, &header)?,
+            "vertex" => vertices = elements(&mut reader, element, &found)?,
+            "face" => faces = elements(&mut reader, element, &found)?,
+            "edge" => edges = elements(&mut reader, element, &found)?,
             _ => {
-                elements::<Skipped>(&mut reader, element, &header)?;
+                elements::<Skipped>(&mut reader, element, &found)?;
             }
         }
     }
@@ -102,34 +99,22 @@ pub(super) fn convert(bytes: &[u8], options: &LoadOptions) -> Result<Converted, 
 fn elements<E: PropertyAccess>(
     reader: &mut Reader<Cursor<&[u8]>>,
     kind: &ElementDef,
-    header: &Header,
+    found: &ply_header::Found,
 ) -> Result<Vec<E>, String> {
-    if header.encoding == Encoding::Ascii {
-        return ply_text::elements(reader.get_mut(), kind);
+    if found.header.encoding == Encoding::Ascii {
+        return ply_text::elements(reader.get_mut(), kind, found.line_end);
     }
-    let found = Parser::new().read_payload_for_element(reader, kind, header);
-    found.map_err(|error| short(&error))
+    let read = Parser::new().read_payload_for_element(reader, kind, &found.header);
+    read.map_err(|error| short(&error))
 }
 
-/// Refuses headers that the parser would take long for.
-fn check_header(bytes: &[u8]) -> Result<(), String> {
-    for (number, line) in bytes.split(|&b| b == b'\n').enumerate() {
-        if line.trim_ascii() == b"end_header" {
-            return Ok(());
-        }
-        if line.len() > MAX_LINE || number == MAX_LINES {
-            return Err(format!(
-                "its header has a line of over {MAX_LINE} bytes, or over {MAX_LINES} lines"
-            ));
-        }
-    }
-    Err("its header has no end".to_owned())
-}
-
-/// The parser's message without the file's own text.
+/// The parser's message without the file's own text, and without a line, which binary elements have
+/// none of.
 fn short(error: &ply_rs_bw::parser::ParseError) -> String {
     let text = error.to_string();
-    text.lines().next().unwrap_or_default().trim().to_owned()
+    let text = text.lines().next().unwrap_or_default().trim();
+    let behind_line = error.line().and_then(|_| text.split_once(": "));
+    behind_line.map_or(text, |(_, said)| said).to_owned()
 }
 
 /// An element takes a byte of the file at least: a short file cannot promise many.

@@ -12,12 +12,13 @@ use super::obj::not_a_number;
 pub(super) fn elements<E: PropertyAccess>(
     from: &mut Cursor<&[u8]>,
     kind: &ElementDef,
+    line_end: u8,
 ) -> Result<Vec<E>, String> {
     let mut found = Vec::with_capacity(kind.count);
     let mut line = Vec::new();
     while found.len() < kind.count {
         line.clear();
-        let length = from.read_until(b'\n', &mut line);
+        let length = from.read_until(line_end, &mut line);
         if length.map_err(|error| error.to_string())? == 0 {
             let (name, count) = (&kind.name, kind.count);
             let there = found.len();
@@ -25,18 +26,20 @@ pub(super) fn elements<E: PropertyAccess>(
         }
         if !line.trim_ascii().is_empty() {
             let read = element(&line, kind);
-            found.push(read.map_err(|cause| format!("line {}: {cause}", line_before(from)))?);
+            found.push(
+                read.map_err(|cause| format!("line {}: {cause}", line_before(from, line_end)))?,
+            );
         }
     }
     Ok(found)
 }
 
 /// The number of the line that has been read last, from 1 on.
-fn line_before(from: &Cursor<&[u8]>) -> usize {
+fn line_before(from: &Cursor<&[u8]>, line_end: u8) -> usize {
     let read = from.get_ref().get(..from.position() as usize);
     read.unwrap_or_default()
         .trim_ascii_end()
-        .split(|&b| b == b'\n')
+        .split(|&b| b == line_end)
         .count()
 }
 

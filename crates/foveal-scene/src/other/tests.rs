@@ -380,7 +380,7 @@ fn broken_files_are_named_with_their_format() {
     }
     assert_eq!(
         refusal("empty.ply", ""),
-        "empty.ply is not PLY: its header has no end"
+        "empty.ply is not PLY: its first line is not \"ply\""
     );
     let many = SQUARE.replace("vertex 4", "vertex 4000000000");
     assert_eq!(
