@@ -9,6 +9,7 @@ mod obj;
 mod ply;
 mod ply_header;
 mod ply_text;
+mod polygons;
 
 #[cfg(test)]
 mod tests;

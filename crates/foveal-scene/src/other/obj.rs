@@ -12,6 +12,7 @@ use serde_json::json;
 use super::builder::{Builder, plain_surface};
 use super::libraries::{MAX_LIBRARIES, Materials, TOO_MANY_LIBRARIES};
 use super::lines::{Line, lines, name_of, uncommented};
+use super::polygons::Polygons;
 use super::{Converted, Refusal, check_memory, linear};
 use crate::error::Limit;
 use crate::gltf::Resolver;
@@ -70,15 +71,17 @@ struct File {
     libraries: Vec<String>,
     /// Names of materials, in the order of their first use.
     used: Vec<String>,
-    /// Corners of the face that is read.
+    /// Corners of the face that is read, their numbers in its group, and where they lie.
     face: Vec<Corner>,
+    numbers: Vec<u32>,
+    places: Vec<[f32; 3]>,
     /// Faces, lines and points.
     shapes: usize,
     dropped: usize,
     not_drawn: usize,
 }
 
-/// One object per group and material; polygons are cut into fans.
+/// One object per group and material; polygons are cut into triangles.
 pub(super) fn convert(
     bytes: &[u8],
     options: &LoadOptions,
@@ -123,6 +126,7 @@ pub(super) fn convert(
 impl File {
     fn parse(bytes: &[u8], options: &LoadOptions) -> Result<Self, Refusal> {
         let mut file = Self::default();
+        let mut polygons = Polygons::of_file(bytes.len());
         let mut name = String::new();
         let mut material = None;
         let mut group_of: HashMap<(String, Option<u32>), usize> = HashMap::new();
@@ -179,7 +183,7 @@ impl File {
                     match key {
                         "l" => file.add_line(group, rest),
                         "p" => file.add_points(group, rest),
-                        _ => file.add_face(group, rest),
+                        _ => file.add_face(group, rest, &mut polygons),
                     }
                     .map_err(|e| broken(&e))?;
                     if file.groups.len() as u64 > options.max_instances {
@@ -224,7 +228,12 @@ impl File {
     }
 
     /// Adds the triangles of a polygon; one that names what does not exist is counted.
-    fn add_face(&mut self, group: usize, text: &str) -> Result<(), String> {
+    fn add_face(
+        &mut self,
+        group: usize,
+        text: &str,
+        polygons: &mut Polygons,
+    ) -> Result<(), String> {
         self.shapes += 1;
         let counts = self.counts();
         self.face.clear();
@@ -236,18 +245,20 @@ impl File {
             self.face.push(corner);
         }
         // Corners of a face that is left out would count among those without normals.
-        let [first, second, _, ..] = self.face[..] else {
+        if self.face.len() < 3 {
             self.dropped += 1;
             return Ok(());
-        };
-        let group = &mut self.groups[group].triangles;
-        let first = group.number(first);
-        let mut last = group.number(second);
-        for &corner in &self.face[2..] {
-            let next = group.number(corner);
-            group.indices.extend([first, last, next]);
-            last = next;
         }
+        let group = &mut self.groups[group].triangles;
+        self.numbers.clear();
+        self.places.clear();
+        for &corner in &self.face {
+            self.numbers.push(group.number(corner));
+            self.places.push(self.positions[corner.0 as usize]);
+        }
+        polygons.cut(&self.places, |triangle| {
+            group.indices.extend(triangle.map(|i| self.numbers[i]));
+        });
         Ok(())
     }
 

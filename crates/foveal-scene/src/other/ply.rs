@@ -10,12 +10,13 @@ use serde_json::json;
 
 use super::builder::{Builder, plain_surface};
 use super::obj::{LINES, POINTS, TRIANGLES};
+use super::polygons::Polygons;
 use super::{Converted, Refusal, check_memory, linear, ply_header, ply_text};
 use crate::error::Limit;
 use crate::gltf::BYTE_ORDER_MARK;
 use crate::{Code, LoadOptions, Warning};
 
-/// The mesh as one object; polygons are cut into fans. Without faces its edges become lines, and
+/// The mesh as one object; polygons are cut into triangles. Without faces its edges become lines, and
 /// without these its vertices points.
 pub(super) fn convert(bytes: &[u8], options: &LoadOptions) -> Result<Converted, Refusal> {
     let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
@@ -47,7 +48,10 @@ pub(super) fn convert(bytes: &[u8], options: &LoadOptions) -> Result<Converted, 
         notes.push(Warning::new(Code::PrimitiveMode, text));
     }
     let (mode, indices) = if !faces.is_empty() || has_strips {
-        (TRIANGLES, fans(&faces, vertices.len(), &mut notes))
+        (
+            TRIANGLES,
+            triangles(&faces, &vertices, bytes.len(), &mut notes),
+        )
     } else if !edges.is_empty() {
         (LINES, segments(&edges, vertices.len(), &mut notes))
     } else {
@@ -163,19 +167,29 @@ fn segments(edges: &[Edge], vertices: usize, notes: &mut Vec<Warning>) -> Vec<u3
     indices
 }
 
-/// Triangles of all faces that name vertices that exist.
-fn fans(faces: &[Face], vertices: usize, notes: &mut Vec<Warning>) -> Vec<u32> {
+/// Triangles of all faces that name vertices that exist, in a file of so many bytes.
+fn triangles(
+    faces: &[Face],
+    vertices: &[Corner],
+    file_bytes: usize,
+    notes: &mut Vec<Warning>,
+) -> Vec<u32> {
     let mut indices = Vec::with_capacity(3 * faces.len());
+    let mut polygons = Polygons::of_file(file_bytes);
+    let mut places = Vec::new();
     let mut dropped = 0usize;
     for face in faces {
         let corners = &face.corners;
-        if corners.len() < 3 || corners.iter().any(|&i| i as usize >= vertices) {
+        let found = corners.iter().map_while(|&i| vertices.get(i as usize));
+        places.clear();
+        places.extend(found.map(|vertex| vertex.position));
+        if corners.len() < 3 || places.len() < corners.len() {
             dropped += 1;
             continue;
         }
-        for pair in corners[1..].windows(2) {
-            indices.extend([corners[0], pair[0], pair[1]]);
-        }
+        polygons.cut(&places, |triangle| {
+            indices.extend(triangle.map(|i| corners[i]));
+        });
     }
     if dropped > 0 {
         let text = format!(

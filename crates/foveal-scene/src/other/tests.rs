@@ -2,6 +2,7 @@
 
 mod libraries;
 mod lines;
+mod shapes;
 
 use proptest::prelude::*;
 
