@@ -18,7 +18,9 @@ pub(super) struct Line<'a> {
 /// A byte order mark before the first is left out. Bytes that are not UTF-8 are replaced.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = Line<'_>> {
     let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
-    let mut rest = bytes.split(|&b| b == b'\n').enumerate();
+    // Old programs for the Macintosh write CR alone.
+    let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
+    let mut rest = bytes.split(move |&b| b == end).enumerate();
     std::iter::from_fn(move || {
         loop {
             let (index, first) = rest.next()?;

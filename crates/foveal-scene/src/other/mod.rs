@@ -5,6 +5,7 @@ mod builder;
 mod libraries;
 mod lines;
 mod mtl;
+mod numbers;
 mod obj;
 mod ply;
 mod ply_header;

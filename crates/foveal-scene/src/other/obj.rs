@@ -6,12 +6,14 @@
 //! Lines become lists of two vertices each.
 
 use std::collections::HashMap;
+use std::num::IntErrorKind::{NegOverflow, PosOverflow};
 
 use serde_json::json;
 
 use super::builder::{Builder, plain_surface};
 use super::libraries::{MAX_LIBRARIES, Materials, TOO_MANY_LIBRARIES};
 use super::lines::{Line, lines, name_of, uncommented};
+use super::numbers::{not_a_number, parsed};
 use super::polygons::Polygons;
 use super::{Converted, Refusal, check_memory, linear};
 use crate::error::Limit;
@@ -210,15 +212,12 @@ impl File {
 
     fn add_position(&mut self, text: &str) -> Result<(), String> {
         let words = text.split_whitespace().take_while(|w| !w.starts_with('#'));
-        let numbers: Vec<f32> = words
-            .take(7)
-            .map(|word| word.parse().map_err(|_| not_a_number(word)))
-            .collect::<Result<_, _>>()?;
+        let numbers: Vec<f32> = words.take(7).map(parsed).collect::<Result<_, _>>()?;
         let [x, y, z, rest @ ..] = &numbers[..] else {
             return Err("a vertex has fewer than three numbers".to_owned());
         };
-        // A colour follows for certain where there are three numbers more; one is a weight.
-        if let [.., r, g, b] = rest
+        // A colour, and its opacity, follow where there are three numbers more; one is a weight.
+        if let [r, g, b, ..] = rest
             && self.colors.len() == self.positions.len()
         {
             self.colors.push([*r, *g, *b]);
@@ -382,19 +381,13 @@ impl File {
     }
 }
 
-/// What is said of a word that should be a number.
-pub(super) fn not_a_number(word: &str) -> String {
-    let word: String = word.chars().take(40).collect();
-    format!("\"{word}\" is not a number")
-}
-
 /// `N` numbers, of which `least` must be there; the others are 0.
 fn floats<const N: usize>(text: &str, least: usize) -> Result<[f32; N], String> {
     let mut out = [0.0; N];
     let words = text.split_whitespace().take_while(|w| !w.starts_with('#'));
     let mut count = 0;
     for (slot, word) in out.iter_mut().zip(words) {
-        *slot = word.parse().map_err(|_| not_a_number(word))?;
+        *slot = parsed(word)?;
         count += 1;
     }
     if count < least {
@@ -411,7 +404,12 @@ fn corner(word: &str, counts: [usize; 3]) -> Result<Option<Corner>, String> {
         if part.is_empty() {
             continue;
         }
-        let number: i64 = part.parse().map_err(|_| not_a_number(part))?;
+        let number: i64 = match part.parse::<i64>() {
+            Ok(number) => number,
+            // So many there are not.
+            Err(e) if matches!(e.kind(), PosOverflow | NegOverflow) => continue,
+            Err(_) => return Err(not_a_number(part)),
+        };
         let count = count as i64;
         // From 1 on, or backwards from the last one so far.
         let index = if number < 0 {

@@ -6,7 +6,7 @@ use std::str::{FromStr, SplitAsciiWhitespace};
 
 use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyType, ScalarType};
 
-use super::obj::not_a_number;
+use super::numbers::parsed;
 
 /// Reads all elements of a kind.
 pub(super) fn elements<E: PropertyAccess>(
@@ -84,19 +84,7 @@ fn list(scalar: &ScalarType, words: &mut SplitAsciiWhitespace<'_>) -> Result<Pro
 }
 
 fn number<T: FromStr>(words: &mut SplitAsciiWhitespace<'_>) -> Result<T, String> {
-    let word = words.next().ok_or("has too few numbers")?;
-    let number = without_payload(word);
-    number.parse().map_err(|_| not_a_number(word))
-}
-
-/// A NaN without what C may write behind it: `-nan(ind)`, `nan(0x8000)`.
-fn without_payload(word: &str) -> &str {
-    let is_nan = |number: &str| {
-        let name = number.trim_start_matches(['+', '-']);
-        name.eq_ignore_ascii_case("nan")
-    };
-    let cut = word.split_once('(').map(|(number, _)| number);
-    cut.filter(|number| is_nan(number)).unwrap_or(word)
+    parsed(words.next().ok_or("has too few numbers")?)
 }
 
 /// As many numbers as the first one says.

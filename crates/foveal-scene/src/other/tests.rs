@@ -2,6 +2,7 @@
 
 mod libraries;
 mod lines;
+mod numbers;
 mod shapes;
 
 use proptest::prelude::*;

@@ -49,3 +49,20 @@ fn a_comment_behind_a_name_is_no_part_of_it() {
     let names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
     assert_eq!(names[..2], ["red", "Material #25"]);
 }
+
+#[test]
+fn lines_may_end_in_a_carriage_return_alone() {
+    let text = "# by hand\nv 0 0 0\nv 1 0 0\nv 0 1 0\nmtllib a.mtl\nusemtl red\nf 1 \\\n2 3\n";
+    let material = "newmtl red\nKd 1 0 0\n";
+    for end in ["\n", "\r\n", "\r"] {
+        let [text, material] = [text, material].map(|t| t.replace('\n', end));
+        let scene = load("a.obj", text.as_bytes(), &[("a.mtl", &material)]).unwrap();
+        assert_eq!(scene.triangle_count(), 1);
+        assert_eq!(scene.materials[0].base_color.to_array(), [1., 0., 0., 1.]);
+        let wrong = text.replace("0 1 0", "0 x 0");
+        let said = load("a.obj", wrong.as_bytes(), &[])
+            .unwrap_err()
+            .to_string();
+        assert!(said.ends_with("line 4: \"x\" is not a number"), "{said}");
+    }
+}
