@@ -83,13 +83,17 @@ struct File {
     not_drawn: usize,
 }
 
-/// One object per group and material; polygons are cut into triangles.
+/// One object per group and material; polygons are cut into triangles. Of a file of vertices alone each
+/// is a point.
 pub(super) fn convert(
     bytes: &[u8],
     options: &LoadOptions,
     resolver: &Resolver<'_>,
 ) -> Result<Converted, Refusal> {
-    let file = File::parse(bytes, options)?;
+    let mut file = File::parse(bytes, options)?;
+    if file.shapes + file.not_drawn == 0 && !file.positions.is_empty() {
+        file.add_cloud();
+    }
     let mut notes = Vec::new();
     let mut builder = Builder::default();
     check_memory(
@@ -297,6 +301,20 @@ impl File {
             }
         }
         Ok(())
+    }
+
+    /// Adds a point for each vertex.
+    fn add_cloud(&mut self) {
+        let numbers = 0..self.positions.len() as u32;
+        let points = Shapes {
+            corners: numbers.clone().map(|i| (i, None, None)).collect(),
+            indices: numbers.collect(),
+            ..Shapes::default()
+        };
+        self.groups.push(Group {
+            points,
+            ..Group::default()
+        });
     }
 
     fn counts(&self) -> [usize; 3] {

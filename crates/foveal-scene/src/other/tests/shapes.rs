@@ -26,3 +26,17 @@ fn a_polygon_that_is_not_convex_is_not_filled_beyond_its_edges() {
         assert_eq!((scene.triangle_count(), area(&scene)), (2, 1.0), "{name}");
     }
 }
+
+#[test]
+fn vertices_alone_are_points() {
+    let text = "mtllib none.mtl\no scan\nv 0 0 0 1 0 0\nv 1 2 3 0 0 1\nvn 0 0 1\n";
+    let scene = load("a.obj", text.as_bytes(), &[]).unwrap();
+    let mesh = &scene.meshes[0];
+    assert_eq!((&mesh.points[..], scene.point_count()), (&[0, 1][..], 2));
+    assert_eq!(scene.bounds().max.to_array(), [1.0, 2.0, 3.0]);
+    assert_eq!(mesh.vertices[1].color, [0, 0, u16::MAX, u16::MAX]);
+    // What names vertices that are not there is no cloud of points.
+    let text = "v 0 0 0\nv 1 2 3\nf 1 2 9\n";
+    let scene = load("a.obj", text.as_bytes(), &[]).unwrap();
+    assert_eq!(scene.point_count(), 0);
+}
