@@ -6,6 +6,7 @@ use std::path::Path;
 
 use serde_json::json;
 
+use super::lines::unquoted;
 use super::{Converted, Refusal};
 use crate::Warning;
 
@@ -42,8 +43,8 @@ pub(super) struct Builder {
     meshes: List,
     nodes: List,
     texture_of: HashMap<String, usize>,
-    /// Of paths of pictures: where a picture may lie instead.
-    elsewhere: HashMap<String, String>,
+    /// Of paths of pictures: where a picture may lie instead, in order.
+    elsewhere: HashMap<String, Vec<String>>,
 }
 
 /// What has no material of its own: no metal, and seen from both sides.
@@ -75,25 +76,30 @@ impl Builder {
         self.accessor(bytes, UNSIGNED_INT, "SCALAR", values.len())
     }
 
-    /// The number of a texture that shows the picture in a file: in `folder`, else beside the scene.
+    /// The number of a texture that shows the picture in a file: in `folder`, else beside the scene. A
+    /// picture whose own folders are not there, as those of another machine, is looked for without them.
     pub(super) fn texture(&mut self, folder: &str, file: &str) -> usize {
         // Exporters for Windows write its separators.
-        let file = file.replace('\\', "/");
-        let in_folder = !folder.is_empty() && !Path::new(&file).has_root();
-        let path = if in_folder {
-            format!("{folder}/{file}")
-        } else {
-            file.clone()
+        let file = unquoted(file).replace('\\', "/");
+        let name = file.rsplit('/').next().unwrap_or_default();
+        let within = |file: &str| match folder {
+            "" => file.to_owned(),
+            _ => format!("{folder}/{file}"),
         };
+        let path = match Path::new(&file).has_root() {
+            true => file.clone(),
+            false => within(&file),
+        };
+        let mut others = vec![file.clone(), within(name), name.to_owned()];
+        others.retain(|other| *other != path);
+        others.dedup();
         if let Some(number) = self.texture_of.get(&path) {
             return *number;
         }
         let uri = percent_encoding::utf8_percent_encode(&path, ESCAPED).to_string();
         let image = self.images.push(json!({ "uri": uri }));
         let number = self.textures.push(json!({ "source": image }));
-        if in_folder {
-            self.elsewhere.insert(path.clone(), file);
-        }
+        self.elsewhere.insert(path.clone(), others);
         self.texture_of.insert(path, number);
         number
     }

@@ -1,8 +1,10 @@
 //! The material libraries that an OBJ file names.
 
 use std::collections::{HashMap, HashSet};
+use std::path::Path;
 
 use super::builder::Builder;
+use super::lines::unquoted;
 use super::mtl;
 use crate::gltf::Resolver;
 use crate::{Code, Warning};
@@ -46,7 +48,7 @@ impl<'a> Materials<'a> {
 
     /// Reads what a line names: one library with blanks in its name, or several.
     pub(super) fn read(&mut self, line: &str) {
-        let line = line.replace('\\', "/");
+        let line = unquoted(line).replace('\\', "/");
         let Err(cause) = self.read_one(&line) else {
             return;
         };
@@ -69,7 +71,7 @@ impl<'a> Materials<'a> {
         let mut causes = Vec::new();
         let mut has_read = false;
         for name in line.split_whitespace().take_while(|w| !w.starts_with('#')) {
-            match self.read_one(name) {
+            match self.read_one(unquoted(name)) {
                 Ok(()) => has_read = true,
                 Err(cause) if cause == TOO_MANY_LIBRARIES => {
                     causes.push(cause);
@@ -81,8 +83,30 @@ impl<'a> Materials<'a> {
         has_read.then_some(causes)
     }
 
-    /// Reads a library, once.
+    /// Reads the library of the OBJ file's own name, where materials are missing: both may have been
+    /// renamed.
+    pub(super) fn read_own(&mut self, file: &str) {
+        let own = Path::new(file).with_extension("mtl");
+        let own = own.file_name().and_then(|name| name.to_str());
+        if let Some(own) = own
+            && self.found.contains(&None)
+        {
+            // It need not be there.
+            let _ = self.read_one(own);
+        }
+    }
+
+    /// Reads a library, once. One in folders that are not there, as those of another machine, is looked
+    /// for beside the OBJ file.
     fn read_one(&mut self, name: &str) -> Result<(), String> {
+        let beside = name.rsplit_once('/').map(|(_, beside)| beside);
+        match (self.read_at(name), beside) {
+            (Err(cause), Some(beside)) => self.read_at(beside).map_err(|_| cause),
+            (result, _) => result,
+        }
+    }
+
+    fn read_at(&mut self, name: &str) -> Result<(), String> {
         if self.tried.contains(name) {
             return Ok(());
         }

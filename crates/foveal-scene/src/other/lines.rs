@@ -69,3 +69,9 @@ pub(super) fn name_of(text: &str) -> String {
     }
     text[..end].to_owned()
 }
+
+/// What stands between two quotes.
+pub(super) fn unquoted(text: &str) -> &str {
+    let inner = text.strip_prefix('"').and_then(|t| t.strip_suffix('"'));
+    inner.filter(|t| !t.contains('"')).unwrap_or(text)
+}

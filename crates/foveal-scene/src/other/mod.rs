@@ -36,16 +36,17 @@ pub(crate) struct Converted {
     pub(crate) glb: Vec<u8>,
     /// What it leaves out.
     pub(crate) notes: Vec<Warning>,
-    /// Of paths of pictures: where a picture may lie instead.
-    elsewhere: HashMap<String, String>,
+    /// Of paths of pictures: where a picture may lie instead, in order.
+    elsewhere: HashMap<String, Vec<String>>,
 }
 
 impl Converted {
     /// The bytes of a file that the GLB names.
     pub(crate) fn resolve(&self, path: &str, resolver: &Resolver<'_>) -> Result<Vec<u8>, String> {
-        resolver(path).or_else(|cause| match self.elsewhere.get(path) {
-            Some(other) => resolver(other).map_err(|_| cause),
-            None => Err(cause),
+        resolver(path).or_else(|cause| {
+            let others = self.elsewhere.get(path).into_iter().flatten();
+            let mut found = others.filter_map(|other| resolver(other).ok());
+            found.next().ok_or(cause)
         })
     }
 }
@@ -97,7 +98,7 @@ impl Format {
         resolver: &Resolver<'_>,
     ) -> Result<Converted, SceneError> {
         let convert = || match self {
-            Self::Obj => obj::convert(bytes, options, resolver),
+            Self::Obj => obj::convert(bytes, file, options, resolver),
             Self::Ply => ply::convert(bytes, options),
         };
         // The decoders promise not to panic; should they, this file is broken and nothing else.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde_json::{Value, json};
 
 use super::builder::Builder;
-use super::lines::{Line, lines, name_of};
+use super::lines::{Line, lines, name_of, uncommented};
 use crate::{Code, Warning};
 
 /// A material as the file has it.
@@ -125,7 +125,7 @@ fn map(text: &str) -> Option<Map> {
             rest = after.trim_start();
         }
     }
-    let file = rest.trim();
+    let file = uncommented(rest.trim());
     let is_finite = scale.iter().chain(&offset).all(|x| x.is_finite());
     (!file.is_empty() && is_finite).then(|| Map {
         file: file.to_owned(),

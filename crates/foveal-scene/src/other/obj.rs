@@ -87,6 +87,7 @@ struct File {
 /// is a point.
 pub(super) fn convert(
     bytes: &[u8],
+    name: &str,
     options: &LoadOptions,
     resolver: &Resolver<'_>,
 ) -> Result<Converted, Refusal> {
@@ -103,7 +104,7 @@ pub(super) fn convert(
         bytes.len(),
         options,
     )?;
-    let materials = file.add_materials(resolver, &mut builder, &mut notes);
+    let materials = file.add_materials(name, resolver, &mut builder, &mut notes);
     if file.dropped > 0 {
         let text = format!(
             "{} of {} faces, lines and points have too few corners or name vertices that do not exist, \
@@ -324,6 +325,7 @@ impl File {
     /// Adds the materials that faces use; returns the number of each in the document.
     fn add_materials(
         &self,
+        name: &str,
         resolver: &Resolver<'_>,
         builder: &mut Builder,
         notes: &mut Vec<Warning>,
@@ -332,6 +334,7 @@ impl File {
         for line in &self.libraries {
             materials.read(line);
         }
+        materials.read_own(name);
         materials.finish()
     }
 

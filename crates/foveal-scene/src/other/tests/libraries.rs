@@ -101,5 +101,65 @@ fn pictures_are_looked_for_beside_their_library_and_then_beside_the_scene() {
         asked_for("wood.png", false),
         [library, "sub/wood.png", "wood.png"]
     );
-    assert_eq!(asked_for("/wood.png", false), [library, "/wood.png"]);
+    assert_eq!(
+        asked_for("/wood.png", false),
+        [library, "/wood.png", "sub/wood.png", "wood.png"]
+    );
+}
+
+#[test]
+fn a_library_may_stand_in_quotes_or_name_folders_of_another_machine() {
+    let material = "newmtl brick\nKd 1 0 0\nnewmtl glass\n";
+    for name in [
+        "\"my house.mtl\"",
+        "C:\\Users\\me\\my house.mtl",
+        "\"/home/me/my house.mtl\" # mine",
+        "models/my house.mtl",
+    ] {
+        let text = HOUSE.replace("house.mtl", name);
+        let scene = load("a.obj", text.as_bytes(), &[("my house.mtl", material)]).unwrap();
+        assert_eq!(scene.warnings, [], "{name}");
+        assert_eq!(scene.materials[0].base_color.to_array(), [1., 0., 0., 1.]);
+    }
+    let text = HOUSE.replace("house.mtl", "\"a.mtl\" \"b.mtl\"");
+    let beside = [("a.mtl", "newmtl glass\n"), ("b.mtl", "newmtl brick\n")];
+    let scene = load("house.obj", text.as_bytes(), &beside).unwrap();
+    assert_eq!(scene.warnings, []);
+}
+
+#[test]
+fn the_library_of_the_files_own_name_has_what_others_lack() {
+    let beside = [
+        ("a.mtl", "newmtl brick\nKd 1 0 0\n"),
+        ("other.mtl", "newmtl glass\n"),
+    ];
+    let with = |library: &str| {
+        let text = HOUSE.replace("house.mtl", library);
+        let scene = load("models/a.obj", text.as_bytes(), &beside).unwrap();
+        assert!(scene.materials.iter().any(|m| m.name == "brick"));
+        scene.warnings.len()
+    };
+    assert_eq!(with("other.mtl"), 0);
+    // The library that is named, and the material that neither has.
+    assert_eq!(with("house.mtl"), 2);
+}
+
+#[test]
+fn a_picture_may_stand_in_quotes_before_a_comment_or_in_folders_of_another_machine() {
+    for name in [
+        "\"brick.png\"",
+        "brick.png # red",
+        "C:\\Users\\me\\brick.png",
+        "C:\\\\Users\\\\me\\\\brick.png",
+        "-s 1 1 1 /home/me/brick.png",
+        "..\\textures\\brick.png",
+    ] {
+        let material = HOUSE_MTL.replace("brick.png", name);
+        let beside = [("house.mtl", &*material), ("brick.png", "no picture")];
+        let scene = load("a.obj", HOUSE.as_bytes(), &beside).unwrap();
+        let said: Vec<&str> = scene.warnings.iter().map(|w| w.text.as_str()).collect();
+        // It is found, and none.
+        assert!(said[0].starts_with("material glass"), "{said:?}");
+        assert!(!said[1].contains("there is none"), "{name}: {said:?}");
+    }
 }
