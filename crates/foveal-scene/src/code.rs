@@ -88,7 +88,7 @@ codes! {
     AccessorCount = "ACCESSOR_COUNT",
     /// Draco or meshopt data are broken, or do not hold what the file promises.
     CompressedData = "COMPRESSED_DATA",
-    /// Geometry is made of what is not drawn: free-form surfaces, or triangle strips of a PLY file.
+    /// Geometry is made of what is not drawn: free-form curves and surfaces of an OBJ file.
     PrimitiveMode = "PRIMITIVE_NOT_TRIANGLES",
     /// A primitive has no positions and is not drawn.
     PrimitivePositions = "PRIMITIVE_NO_POSITIONS",

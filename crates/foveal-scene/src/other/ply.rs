@@ -16,8 +16,8 @@ use crate::error::Limit;
 use crate::gltf::BYTE_ORDER_MARK;
 use crate::{Code, LoadOptions, Warning};
 
-/// The mesh as one object; polygons are cut into triangles. Without faces its edges become lines, and
-/// without these its vertices points.
+/// The mesh as one object; polygons are cut into triangles. Without faces and strips its edges become
+/// lines, and without these its vertices points.
 pub(super) fn convert(bytes: &[u8], options: &LoadOptions) -> Result<Converted, Refusal> {
     let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
     let found = ply_header::read(bytes)?;
@@ -27,11 +27,13 @@ pub(super) fn convert(bytes: &[u8], options: &LoadOptions) -> Result<Converted, 
     rest.set_position(found.length as u64);
     let mut reader = Reader::new(rest);
     let (mut vertices, mut faces, mut edges) = (Vec::new(), Vec::new(), Vec::new());
+    let mut strips = Vec::new();
     for (name, element) in &header.elements {
         match name.as_str() {
             "vertex" => vertices = elements(&mut reader, element, &found)?,
             "face" => faces = elements(&mut reader, element, &found)?,
             "edge" => edges = elements(&mut reader, element, &found)?,
+            "tristrips" => strips = elements(&mut reader, element, &found)?,
             _ => {
                 elements::<Skipped>(&mut reader, element, &found)?;
             }
@@ -42,24 +44,20 @@ pub(super) fn convert(bytes: &[u8], options: &LoadOptions) -> Result<Converted, 
         element.is_some_and(|element| element.properties.contains_key(key))
     };
     let mut notes = Vec::new();
-    let has_strips = header.elements.contains_key("tristrips");
-    if faces.is_empty() && has_strips {
-        let text = "has triangle strips instead of faces, which are not drawn";
-        notes.push(Warning::new(Code::PrimitiveMode, text));
-    }
-    let (mode, indices) = if !faces.is_empty() || has_strips {
-        (
-            TRIANGLES,
-            triangles(&faces, &vertices, bytes.len(), &mut notes),
-        )
+    let (mode, indices) = if !faces.is_empty() || !strips.is_empty() {
+        let mut indices = triangles(&faces, &vertices, bytes.len(), &mut notes);
+        add_strips(&strips, vertices.len(), &mut indices, &mut notes);
+        (TRIANGLES, indices)
     } else if !edges.is_empty() {
         (LINES, segments(&edges, vertices.len(), &mut notes))
     } else {
         (POINTS, (0..vertices.len() as u32).collect())
     };
-    if has("face", "texcoord") {
-        let text = "has texture coordinates of faces, which are not read; those of vertices are";
-        notes.push(Warning::new(Code::MaterialIgnored, text));
+    for (key, what) in [("texcoord", "texture coordinates"), ("red", "colours")] {
+        if has("face", key) {
+            let text = format!("has {what} of faces, which are not read; those of vertices are");
+            notes.push(Warning::new(Code::MaterialIgnored, text));
+        }
     }
     let mut builder = Builder::default();
     if !indices.is_empty() {
@@ -70,7 +68,7 @@ pub(super) fn convert(bytes: &[u8], options: &LoadOptions) -> Result<Converted, 
         if has("vertex", "nx") {
             attributes["NORMAL"] = json!(builder.vectors(&list(|v| v.normal)));
         }
-        if has("vertex", "red") {
+        if has("vertex", "red") || has("vertex", "diffuse_red") {
             attributes["COLOR_0"] = json!(builder.vectors(&list(|v| v.color)));
         }
         let is_mapped = UVS.iter().any(|[u, _]| has("vertex", u));
@@ -201,6 +199,39 @@ fn triangles(
     indices
 }
 
+/// Adds the triangles of strips, every second of which turns the other way.
+fn add_strips(strips: &[Strip], vertices: usize, indices: &mut Vec<u32>, notes: &mut Vec<Warning>) {
+    let (mut count, mut dropped) = (0usize, 0usize);
+    let runs = strips
+        .iter()
+        .flat_map(|s| s.corners.split(|&i| i == Strip::END));
+    for run in runs {
+        for (number, corners) in run.windows(3).enumerate() {
+            let &[a, b, c] = corners else { continue };
+            // Strips turn and go on by triangles without area.
+            if a == b || b == c || c == a {
+                continue;
+            }
+            count += 1;
+            if [a, b, c].iter().any(|&i| i as usize >= vertices) {
+                dropped += 1;
+                continue;
+            }
+            indices.extend(if number % 2 == 0 {
+                [a, b, c]
+            } else {
+                [b, a, c]
+            });
+        }
+    }
+    if dropped > 0 {
+        let text = format!(
+            "{dropped} of {count} triangles of strips name vertices that do not exist, and are left out"
+        );
+        notes.push(Warning::new(Code::TrianglesUnusable, text));
+    }
+}
+
 /// Names of texture coordinates.
 const UVS: [[&str; 2]; 4] = [
     ["u", "v"],
@@ -234,11 +265,9 @@ impl PropertyAccess for Corner {
             "nx" => &mut self.normal[0],
             "ny" => &mut self.normal[1],
             "nz" => &mut self.normal[2],
-            "red" | "green" | "blue" => {
-                let number = ["red", "green", "blue"].iter().position(|c| *c == name);
-                self.color[number.unwrap_or(0)] = linear(channel(&property, value));
-                return PropertyAccessResult::Set;
-            }
+            "red" | "diffuse_red" => return self.set_color(0, &property, value),
+            "green" | "diffuse_green" => return self.set_color(1, &property, value),
+            "blue" | "diffuse_blue" => return self.set_color(2, &property, value),
             _ => {
                 let at = UVS
                     .iter()
@@ -253,6 +282,13 @@ impl PropertyAccess for Corner {
             }
         };
         *slot = value;
+        PropertyAccessResult::Set
+    }
+}
+
+impl Corner {
+    fn set_color(&mut self, at: usize, property: &Property, value: f32) -> PropertyAccessResult {
+        self.color[at] = linear(channel(property, value));
         PropertyAccessResult::Set
     }
 }
@@ -282,6 +318,36 @@ impl PropertyAccess for Face {
         }
         // Negative numbers name no vertex.
         self.corners = property.to_u32_list().unwrap_or_default();
+        PropertyAccessResult::Set
+    }
+}
+
+/// Vertices of triangle strips.
+#[derive(Default)]
+struct Strip {
+    corners: Vec<u32>,
+}
+
+impl Strip {
+    /// The end of a strip: -1 in the file.
+    const END: u32 = u32::MAX;
+}
+
+impl PropertyAccess for Strip {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        if !matches!(name, "vertex_indices" | "vertex_index") {
+            return PropertyAccessResult::Ignored;
+        }
+        self.corners = match property {
+            Property::ListInt(list) => list.into_iter().map(|i| i as u32).collect(),
+            Property::ListShort(list) => list.into_iter().map(|i| i32::from(i) as u32).collect(),
+            Property::ListChar(list) => list.into_iter().map(|i| i32::from(i) as u32).collect(),
+            other => other.to_u32_list().unwrap_or_default(),
+        };
         PropertyAccessResult::Set
     }
 }

@@ -40,3 +40,52 @@ fn vertices_alone_are_points() {
     let scene = load("a.obj", text.as_bytes(), &[]).unwrap();
     assert_eq!(scene.point_count(), 0);
 }
+
+/// Four corners of a square, with these properties and elements more.
+fn square(properties: &str, values: &str, elements: &str, lists: &str) -> Scene {
+    let text = format!(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n{properties}\
+         {elements}end_header\n0 0 {values}\n1 0 {values}\n0 1 {values}\n1 1 {values}\n{lists}\n"
+    );
+    load("a.ply", text.as_bytes(), &[]).unwrap()
+}
+
+#[test]
+fn strips_are_triangles_of_one_side() {
+    for kind in ["int", "char", "short"] {
+        let element = format!("element tristrips 1\nproperty list int {kind} vertex_indices\n");
+        let scene = square("", "", &element, "16 0 1 2 3 -1 2 1 3 3 0 -1 0 1 9 -1 0");
+        assert_eq!(scene.triangle_count(), 3);
+        let vertices = &scene.meshes[0].vertices;
+        assert!(
+            vertices.iter().all(|v| v.normal == [0.0, 0.0, 1.0]),
+            "{vertices:?}"
+        );
+        let told: Vec<&str> = scene.warnings.iter().map(|w| w.text.as_str()).collect();
+        let sentence =
+            "1 of 4 triangles of strips name vertices that do not exist, and are left out";
+        assert_eq!(told, [sentence]);
+    }
+}
+
+#[test]
+fn colours_of_vertices_have_two_names_and_those_of_faces_are_told() {
+    let face = "element face 1\nproperty list uchar int vertex_indices\n";
+    for prefix in ["", "diffuse_"] {
+        let colors = ["red", "green", "blue"].map(|c| format!("property uchar {prefix}{c}\n"));
+        let scene = square(&colors.concat(), "255 0 0", face, "4 0 1 3 2");
+        assert_eq!(
+            scene.meshes[0].vertices[0].color,
+            [u16::MAX, 0, 0, u16::MAX]
+        );
+        assert_eq!(scene.warnings, []);
+    }
+    let scene = square(
+        "",
+        "",
+        &format!("{face}property uchar red\n"),
+        "4 0 1 3 2 255",
+    );
+    let sentence = "has colours of faces, which are not read; those of vertices are";
+    assert_eq!(scene.warnings[0].text, sentence);
+}
