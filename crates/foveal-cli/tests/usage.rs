@@ -1,8 +1,10 @@
 //! Wrong usage is told apart from failure: exit code 2, and nothing is read, drawn or written.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 mod common;
 
-use common::{folder, foveal_in, names, stderr, stdout, succeed};
+use common::{folder, foveal_in, moving_triangle, names, stderr, stdout, succeed};
 
 #[test]
 fn wrong_words_are_usage_errors() {
@@ -87,6 +89,9 @@ fn words_that_contradict_each_other_are_usage_errors() {
         ),
         ("compare a.png b.png --diff ./a.png", "is compared"),
         ("compare a.png b.png --heat-map b.png", "is compared"),
+        ("compare a.png b.png --diff x.jpg", ".png"),
+        ("compare a.png b.png --heat-map -", ".png"),
+        ("bench diff a.json b.json --page ./b.json", "is compared"),
         ("cull --depth a.png --overlay ./a.png", "same file"),
         ("cull --depth a.png --json ./a.png", "same file"),
     ];
@@ -99,6 +104,24 @@ fn words_that_contradict_each_other_are_usage_errors() {
         assert!(said.contains(cause), "foveal {line}: {said}");
     }
     assert!(names(folder.path()).is_empty());
+}
+
+#[test]
+fn no_file_is_written_over_the_scene() {
+    let folder = folder();
+    let scene = moving_triangle(folder.path());
+    let before = std::fs::read(&scene).unwrap();
+    for line in [
+        "render triangle.gltf -o a.png --stats ./triangle.gltf",
+        "cull triangle.gltf --json triangle.gltf",
+    ] {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let output = foveal_in(folder.path(), &words);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "foveal {line}: {said}");
+        assert!(said.contains("the scene's own file"), "{said}");
+    }
+    assert!(std::fs::read(&scene).unwrap() == before);
 }
 
 #[test]

@@ -12,11 +12,15 @@ use std::time::Duration;
 
 use anyhow::{Context, bail};
 
-/// Checks that a file can be written at `path`, without touching one that is there.
+/// Checks that a file can be written at `path`, without touching one that is there. `-`, by which
+/// commands mean standard output, is no file.
 ///
 /// # Errors
 /// Names the folder or the file and what is in the way.
 pub fn check_writable(path: &Path) -> anyhow::Result<()> {
+    if path == Path::new("-") {
+        bail!("cannot write '-': this cannot go to standard output; a file of that name is './-'");
+    }
     let destination = destination(path)?;
     let folder = folder_of(&destination);
     if !folder.is_dir() {
@@ -379,6 +383,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         check_writable(&folder.path().join("a.png")).unwrap();
         assert!(names(folder.path()).is_empty());
+    }
+
+    #[test]
+    fn standard_output_is_no_file() {
+        let error = check_writable(Path::new("-")).unwrap_err().to_string();
+        assert!(error.contains("standard output"), "{error}");
     }
 
     #[test]

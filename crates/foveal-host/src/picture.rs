@@ -6,6 +6,9 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use image::{ColorType, DynamicImage, ImageDecoder, ImageReader, Limits, RgbaImage};
 
+use crate::failure::usage;
+use crate::linear_picture::PictureFormat;
+
 /// Most bytes of a decoded picture: twice those of 16384 x 16384 pixels of 16-bit RGBA.
 const MAX_DECODED: u64 = 4 << 30;
 
@@ -109,6 +112,20 @@ fn decode(path: &Path) -> anyhow::Result<RgbaImage> {
         bail!("it takes {has} MiB decoded; the limit is {most} MiB");
     }
     Ok(DynamicImage::from_decoder(decoder)?.into_rgba8())
+}
+
+/// Refuses a name that promises another format than PNG.
+///
+/// # Errors
+/// Names the file.
+pub fn check_name(path: &Path) -> anyhow::Result<()> {
+    match PictureFormat::of(path) {
+        Some(PictureFormat::Png) => Ok(()),
+        _ => usage(format!(
+            "'{}' must end in .png: pictures are written as PNG",
+            path.display()
+        )),
+    }
 }
 
 /// Writes RGB8 rows as a PNG, whole or not at all.

@@ -10,6 +10,7 @@ use foveal_generate as generate;
 use foveal_generate::{DemoOptions, GenerateError};
 use foveal_scene::{Camera, LoadOptions, LoadTimings, Scene, TextureCompression};
 
+use crate::atomic_file;
 use crate::import_args::{self, NoSuchScene};
 
 /// What is drawn without SCENE.
@@ -61,6 +62,12 @@ pub fn load_with(name: &str, options: &LoadOptions) -> anyhow::Result<Scene> {
 /// As [`load_with`] by the importer's default options.
 pub fn load(name: &str) -> anyhow::Result<Scene> {
     load_with(name, &LoadOptions::default())
+}
+
+/// Whether a file that is to be written would replace the scene's own.
+pub fn is_replaced_by(name: &str, file: &Path) -> bool {
+    let own = Path::new(name);
+    name != STDIN && own.is_file() && atomic_file::any_twice([own, file])
 }
 
 fn from_file(

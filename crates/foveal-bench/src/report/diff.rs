@@ -15,6 +15,7 @@ use anyhow::{Context, bail};
 use serde_json::Value;
 
 use crate::table::text;
+use foveal_host::failure::usage;
 use foveal_host::{atomic_file, console};
 use notes::{failures, notes};
 use pairs::{Change, Pair, pairs};
@@ -36,10 +37,14 @@ pub struct Args {
 
 /// Prints what changed.
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
-    let (old, new) = (read(&args.old)?, read(&args.new)?);
     if let Some(file) = &args.page {
+        let replaces = |report: &Path| atomic_file::any_twice([file.as_path(), report]);
+        if replaces(&args.old) || replaces(&args.new) {
+            return usage("--page names a report that is compared");
+        }
         atomic_file::check_writable(file)?;
     }
+    let (old, new) = (read(&args.old)?, read(&args.new)?);
     let names = [&args.old, &args.new].map(|path| path.display().to_string());
     let difference = Difference::of(&old, &new, [&names[0], &names[1]])?;
     if let Some(file) = &args.page {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 use foveal_host::failure::usage;
-use foveal_host::{atomic_file, console, values};
+use foveal_host::{atomic_file, console, picture, values};
 use serde::Serialize;
 
 use super::eye::EyeArgs;
@@ -78,6 +78,7 @@ impl Args {
     pub(super) fn check(&self) -> anyhow::Result<()> {
         let (diff, heat_map) = (self.diff.as_deref(), self.eye.heat_map());
         for (flag, file) in [("--diff", diff), ("--heat-map", heat_map)] {
+            file.map_or(Ok(()), picture::check_name)?;
             let replaces = |input| file.is_some_and(|file| atomic_file::any_twice([file, input]));
             if replaces(&self.a) || replaces(&self.b) {
                 return usage(format!("{flag} names a picture that is compared"));

@@ -2,18 +2,17 @@
 
 use std::path::PathBuf;
 
-use foveal_host::atomic_file;
 use foveal_host::culling::{CullingArgs, ViewArgs};
 use foveal_host::failure::usage;
 use foveal_host::import_args::ImportArgs;
-use foveal_host::values;
+use foveal_host::{atomic_file, picture, scene_source, values};
 
 /// Arguments of `foveal cull`.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct Args {
     /// A glTF 2.0, OBJ or PLY file, or a generated scene, as for `foveal render`; or recorded
     /// occluder draws (.mocrec)
-    #[arg(default_value = foveal_host::scene_source::DEFAULT_SCENE)]
+    #[arg(default_value = scene_source::DEFAULT_SCENE)]
     pub(super) scene: String,
 
     #[command(flatten)]
@@ -68,19 +67,15 @@ impl Args {
     pub(super) fn check(&self) -> anyhow::Result<()> {
         self.views.check()?;
         for file in self.depth.iter().chain(&self.overlay) {
-            if file
-                .extension()
-                .is_none_or(|e| !e.eq_ignore_ascii_case("png"))
-            {
-                return usage(format!(
-                    "'{}' must end in .png: pictures are written as PNG",
-                    file.display()
-                ));
-            }
+            picture::check_name(file)?;
         }
         let written = self.depth.iter().chain(&self.overlay).chain(&self.json);
-        if atomic_file::any_twice(written.map(PathBuf::as_path)) {
+        let written = written.map(PathBuf::as_path);
+        if atomic_file::any_twice(written.clone()) {
             return usage("--depth, --overlay and --json name the same file");
+        }
+        if { written }.any(|file| scene_source::is_replaced_by(&self.scene, file)) {
+            return usage("--depth, --overlay or --json names the scene's own file");
         }
         if is_recording(&self.scene) && self.views.is_given() {
             return usage("recorded draws have their own view: no camera can be chosen");

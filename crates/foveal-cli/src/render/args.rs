@@ -5,13 +5,12 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use foveal::Settings;
-use foveal_host::atomic_file;
 use foveal_host::camera::CameraArgs;
 use foveal_host::failure::usage;
 use foveal_host::import_args::ImportArgs;
 use foveal_host::linear_picture::PictureFormat;
 use foveal_host::settings::SettingsArgs;
-use foveal_host::values;
+use foveal_host::{atomic_file, scene_source, values};
 
 use super::sharing::Part;
 
@@ -24,7 +23,7 @@ pub(crate) struct Args {
     /// A glTF 2.0 file (.gltf or .glb), a mesh (.obj or .ply), a generated scene (demo,
     /// demo:INSTANCES, materials, materials2, cornell, materials-grid, alpha, lobes, yard), or -: a
     /// .glb on standard input
-    #[arg(default_value = foveal_host::scene_source::DEFAULT_SCENE)]
+    #[arg(default_value = scene_source::DEFAULT_SCENE)]
     pub(super) scene: String,
 
     /// Picture to write: FILE.png; FILE.exr or FILE.hdr with linear radiance before exposure and
@@ -224,6 +223,10 @@ impl Args {
         let written = [file, self.video.as_deref(), self.stats.as_deref()];
         if atomic_file::any_twice(written.into_iter().flatten()) {
             return usage("--output, --video and --stats name the same file");
+        }
+        let replaces = |file| scene_source::is_replaced_by(&self.scene, file);
+        if written.into_iter().flatten().any(replaces) {
+            return usage("--output, --video or --stats names the scene's own file");
         }
         Ok(())
     }
