@@ -16,7 +16,7 @@ use foveal_scene::{Camera, Scene};
 use serde::Serialize;
 use side::{Side, fovea_differing, psnr};
 
-use super::subject::{Header, SubjectArgs};
+use super::subject::{Header, SubjectArgs, warn};
 use super::table::{jod_text, number_text, passes_ms, text};
 use foveal_host::difference::Nearness;
 use foveal_host::values::VariantParser;
@@ -152,6 +152,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     };
     let gpu = args.subject.begin()?;
     let mut scene = scene_source::load(&args.subject.scene)?;
+    warn(&scene);
     let camera = args.subject.viewpoint(&scene)?.at(&scene, 0.0);
     let mut rows = Vec::new();
     let mut measure = |case: Case, backends: &[CoarseBackend]| -> anyhow::Result<()> {

@@ -28,6 +28,8 @@ use foveal_host::progress::progress_bar;
 use foveal_host::{atomic_file, console, scene_source, values};
 use rows::Row;
 
+use super::subject::warn;
+
 /// Arguments of `foveal bench culling`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Args {
@@ -140,6 +142,7 @@ fn measure(args: &Args) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for name in &args.scenes {
         let scene = scene_source::load(name)?;
+        warn(&scene);
         let occluders = Occluders::of_scene(&scene, &args.culling.occluders)?;
         let boxes = boxes::random(scene.bounds(), args.boxes);
         let objects = Occludees::of_scene(&scene);

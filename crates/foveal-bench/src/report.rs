@@ -247,11 +247,18 @@ fn pass(bench: &Bench, words: &[String]) -> anyhow::Result<Vec<Value>> {
     bench.output(&mut command, folder.path(), &file);
     let output = command.stdin(Stdio::null()).output()?;
     if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr);
-        let said = said.lines().rev().find(|line| !line.trim().is_empty());
-        bail!("{}", said.unwrap_or("it ended without a word"));
+        bail!("{}", cause(&String::from_utf8_lossy(&output.stderr)));
     }
     rows(bench, &file)
+}
+
+/// The cause of a failure, of what a command said: wrong usage has lines behind it that say nothing of
+/// it.
+fn cause(said: &str) -> &str {
+    let mut lines = said.lines().rev();
+    let error = lines.clone().find_map(|line| line.strip_prefix("error: "));
+    let last = || lines.find(|line| !line.trim().is_empty());
+    error.or_else(last).unwrap_or("it ended without a word")
 }
 
 fn rows(bench: &Bench, file: &Path) -> anyhow::Result<Vec<Value>> {

@@ -13,7 +13,7 @@ use pollster::block_on;
 use serde::Serialize;
 
 use super::figures::FigureArgs;
-use super::subject::timed_renderer;
+use super::subject::{timed_renderer, warn};
 use super::table::{number_text, passes_ms, text};
 use foveal_host::camera::{CameraArgs, Viewpoint};
 use foveal_host::{scene_source, values};
@@ -171,6 +171,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let mut rows = Vec::new();
     for name in &scenes {
         let mut scene = scene_source::load(name)?;
+        warn(&scene);
         scene.light_by_default();
         let camera = Viewpoint::choose(&args.camera, &scene, name)?.at(&scene, 0.0);
         for (stages, view) in [

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::figures::FigureArgs;
 use foveal_host::camera::{CameraArgs, Viewpoint};
-use foveal_host::scene_source;
+use foveal_host::{console, scene_source};
 
 /// Frames that compile shaders, and in which what adapts from frame to frame adapts.
 pub(super) const WARM_UP: u32 = 8;
@@ -43,6 +43,12 @@ pub(super) fn timed_renderer(
     }
     block_on(renderer.set_scene(scene))?;
     Ok(renderer)
+}
+
+/// Says what is wrong with a scene: what is measured may not be what its author means.
+pub(super) fn warn(scene: &Scene) {
+    let warnings = scene.warnings.iter();
+    warnings.for_each(|warning| console::warn(&warning.text));
 }
 
 /// Where a camera that sways sideways is in a frame: two centimetres a frame, to and fro within
@@ -120,6 +126,7 @@ impl SubjectArgs {
     pub(super) fn open(&self, point_lights: u32) -> anyhow::Result<Subject> {
         let gpu = self.begin()?;
         let scene = self.scene(point_lights)?;
+        warn(&scene);
         let camera = self.viewpoint(&scene)?.at(&scene, 0.0);
         Ok(Subject { gpu, scene, camera })
     }

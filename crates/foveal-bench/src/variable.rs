@@ -10,7 +10,7 @@ use foveal_scene::{Camera, ProceduralLayers, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
-use super::subject::{SubjectArgs, timed_renderer};
+use super::subject::{SubjectArgs, timed_renderer, warn};
 use super::table::{jod_text, name_of, number_text, passes_ms, text};
 use foveal_host::difference::Nearness;
 use foveal_host::picture::Picture;
@@ -108,6 +108,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     for &lights in &args.point_lights {
         for cost in COSTS {
             let mut scene = args.subject.scene(lights)?;
+            if rows.is_empty() {
+                warn(&scene);
+            }
             if cost != "textured" {
                 strip_textures(&mut scene);
             }

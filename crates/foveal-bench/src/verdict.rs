@@ -18,7 +18,7 @@ use serde::Serialize;
 
 use super::shared::SharedArgs;
 use super::subject::{Header, SubjectArgs};
-use super::table::{jod_text, number_text, text};
+use super::table::{jod_text, name_of, number_text, text};
 use candidates::{Aim, Candidate, candidates_of, together};
 use decision::{Decision, Measured, decide};
 use sides::measure;
@@ -196,6 +196,15 @@ fn row(
 }
 
 fn summary(report: &Report) -> String {
+    let head = format!(
+        "{} at {}x{}, {}, whole frames, medians of {} rounds, drawn in turn by lot\n",
+        report.header.scene, report.width, report.height, report.header.adapter.name, report.rounds
+    );
+    head + &table(&report.rows)
+}
+
+/// For a human.
+fn table(rows: &[Row]) -> String {
     let head = [
         "candidate",
         "",
@@ -207,10 +216,10 @@ fn summary(report: &Report) -> String {
         "JOD",
     ];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
-    for row in &report.rows {
+    for row in rows {
         lines.push(vec![
             row.name.to_owned(),
-            format!("{:?}", row.decision).to_lowercase(),
+            name_of(row.decision),
             number_text(row.reference_ms, 2),
             number_text(row.chosen_ms, 2),
             row.gain.clone(),
@@ -219,14 +228,14 @@ fn summary(report: &Report) -> String {
             jod_text(row.jod),
         ]);
     }
-    let mut said = format!(
-        "{} at {}x{}, {}, whole frames, medians of {} rounds, drawn in turn by lot\n",
-        report.header.scene, report.width, report.height, report.header.adapter.name, report.rounds
-    ) + &text(&lines);
-    for row in &report.rows {
-        if matches!(row.decision, Decision::Adopt | Decision::FasterButVisible) {
-            said += &format!("{}: {}\n", row.name, row.flags);
-        }
+    let mut said = text(&lines);
+    for row in rows {
+        let more = match row.decision {
+            Decision::Adopt | Decision::FasterButVisible => &row.flags,
+            Decision::Impossible => &row.why,
+            _ => continue,
+        };
+        said += &format!("{}: {more}\n", row.name);
     }
     said
 }
@@ -262,5 +271,20 @@ mod tests {
         let row = row(&args, ("a", Aim::Faster), (&plain, &plain), Ok(found));
         assert_eq!(row.decision, Decision::Skip);
         assert_eq!((row.flip_mean, row.jod), (None, None));
+    }
+
+    #[test]
+    fn the_table_has_the_names_of_the_json_and_says_why_something_is_impossible() {
+        let args = Line::parse_from(["verdict"]).args;
+        let plain = Settings::default();
+        let impossible = |name| {
+            let cause = Err("the setting samples is 3".to_owned());
+            row(&args, (name, Aim::Faster), (&plain, &plain), cause)
+        };
+        let mut visible = impossible("a");
+        visible.decision = Decision::FasterButVisible;
+        let said = table(&[visible, impossible("b")]);
+        assert!(said.contains("a          faster-but-visible"), "{said}");
+        assert!(said.ends_with("b: the setting samples is 3\n"), "{said}");
     }
 }

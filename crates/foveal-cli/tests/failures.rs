@@ -339,3 +339,18 @@ fn a_long_recording_is_replayed_as_few_cameras() {
     let said = common::stdout(&common::succeed(folder.path(), &words));
     assert_eq!(said.matches("camera 'recorded").count(), 16, "{said}");
 }
+
+#[test]
+fn benches_say_what_is_wrong_with_a_scene() {
+    let folder = folder();
+    let scene = "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    std::fs::write(folder.path().join("a.obj"), scene).unwrap();
+    for words in [
+        "culling a.obj --repetitions 1 --sizes 8x8 --boxes 1 --threads 1",
+        "culling-frames a.obj --size 8x8 --rounds 1",
+    ] {
+        let words: Vec<&str> = ["bench"].into_iter().chain(words.split(' ')).collect();
+        let said = common::stderr(&common::succeed(folder.path(), &words));
+        assert!(said.starts_with("warning: mtllib: \"none.mtl\""), "{said}");
+    }
+}

@@ -286,3 +286,18 @@ fn two_plots_of_a_bench_are_in_sight_and_commands_are_folded() {
         );
     }
 }
+
+#[test]
+fn the_cause_of_a_failure_is_the_error_itself() {
+    for (said, expected) in [
+        ("warning: slow\nerror: no memory\n", "no memory"),
+        (
+            "error: invalid value '8x8'\n\nFor more information, try '--help'.\n",
+            "invalid value '8x8'",
+        ),
+        ("Killed\n\n", "Killed"),
+        ("", "it ended without a word"),
+    ] {
+        assert_eq!(super::cause(said), expected);
+    }
+}
