@@ -377,3 +377,20 @@ fn a_rate_that_the_metric_does_not_take_is_refused_at_once() {
         assert!(stderr(&output).contains("5 to 1000"), "{}", stderr(&output));
     }
 }
+
+#[test]
+fn pictures_that_are_too_small_for_the_eye_are_named() {
+    let folder = folder();
+    let here = folder.path();
+    png(here, "dot.png", 1, 1, pattern);
+    std::fs::create_dir(here.join("film")).unwrap();
+    png(&here.join("film"), "0.png", 1, 1, pattern);
+    succeed(here, &["compare", "dot.png", "dot.png"]);
+    let words = ["compare", "dot.png", "dot.png", "--display", "h60"];
+    fail(here, &words, &["'dot.png'", "1x1 pixels"]);
+    fail(
+        here,
+        &["compare", "film", "film"],
+        &["'film'", "1x1 pixels"],
+    );
+}

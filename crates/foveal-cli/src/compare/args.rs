@@ -94,6 +94,12 @@ impl Args {
         Ok(())
     }
 
+    /// What cannot be done where the eye's metric fails.
+    pub(super) fn not_seen(&self) -> String {
+        let [a, b] = [&self.a, &self.b].map(|path| path.display());
+        format!("cannot compare '{a}' with '{b}' at a display")
+    }
+
     /// The thresholds that are not met.
     fn failures(&self, measured: &Measured) -> Vec<String> {
         let mut failures = Vec::new();

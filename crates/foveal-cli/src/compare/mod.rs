@@ -8,7 +8,7 @@ mod ssim;
 
 use std::fmt::Write;
 
-use anyhow::bail;
+use anyhow::{Context, bail};
 use serde::Serialize;
 
 pub(crate) use args::Args;
@@ -65,7 +65,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     let (map, mut comparison) = compare(&a, &b);
     comparison.eye = match args.eye.display(args.min_jod.is_some()) {
-        Some(display) => Some(args.eye.compare(&display, &a, &b)?),
+        Some(display) => {
+            let seen = args.eye.compare(&display, &a, &b);
+            Some(seen.with_context(|| args.not_seen())?)
+        }
         None => None,
     };
     if let Some(diff) = &args.diff {

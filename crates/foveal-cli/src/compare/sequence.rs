@@ -56,7 +56,8 @@ fn compare(args: &Args) -> anyhow::Result<Comparison> {
     };
     let size = Picture::read(&args.a.join(first))?;
     let display = args.eye.display(true).context("videos have a display")?;
-    let metric = args.eye.metric(&display, &size)?;
+    let metric = args.eye.metric(&display, &size);
+    let metric = metric.with_context(|| args.not_seen())?;
     let fps = args.eye.fps.unwrap_or(DEFAULT_FPS);
     let mut video = metric.video(fps)?;
     let mut flip = 0.0;
