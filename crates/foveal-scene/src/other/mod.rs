@@ -11,6 +11,7 @@ mod ply;
 mod ply_header;
 mod ply_text;
 mod polygons;
+mod smoothing;
 
 #[cfg(test)]
 mod tests;

@@ -15,6 +15,7 @@ use super::libraries::{MAX_LIBRARIES, Materials, TOO_MANY_LIBRARIES};
 use super::lines::{Line, lines, name_of, uncommented};
 use super::numbers::{not_a_number, parsed};
 use super::polygons::Polygons;
+use super::smoothing::{Corner, Smoothing};
 use super::{Converted, Refusal, check_memory, linear};
 use crate::error::Limit;
 use crate::gltf::Resolver;
@@ -23,9 +24,6 @@ use crate::{Code, LoadOptions, Warning};
 /// What an object, and a material, takes while it is imported, in bytes.
 const OBJECT_BYTES: u64 = 16 << 10;
 const MATERIAL_BYTES: u64 = 8 << 10;
-
-/// Numbers of a corner: position, texture coordinates, normal.
-type Corner = (u32, Option<u32>, Option<u32>);
 
 /// Triangles, lines or points.
 #[derive(Default)]
@@ -69,6 +67,7 @@ struct File {
     colors: Vec<[f32; 3]>,
     uvs: Vec<[f32; 2]>,
     normals: Vec<[f32; 3]>,
+    smoothing: Smoothing,
     groups: Vec<Group>,
     libraries: Vec<String>,
     /// Names of materials, in the order of their first use.
@@ -132,7 +131,10 @@ pub(super) fn convert(
 
 impl File {
     fn parse(bytes: &[u8], options: &LoadOptions) -> Result<Self, Refusal> {
-        let mut file = Self::default();
+        let mut file = Self {
+            smoothing: Smoothing::of_file(bytes),
+            ..Self::default()
+        };
         let mut polygons = Polygons::of_file(bytes.len());
         let mut name = String::new();
         let mut material = None;
@@ -201,6 +203,7 @@ impl File {
                         return Err(Refusal::TooLarge(Some(Limit::Instances), cause));
                     }
                 }
+                "s" => file.smoothing.set(rest),
                 "curv" | "curv2" | "surf" => file.not_drawn += 1,
                 _ => {}
             }
@@ -253,13 +256,14 @@ impl File {
             self.dropped += 1;
             return Ok(());
         }
+        let places = self.face.iter().map(|c| self.positions[c.0 as usize]);
+        self.places.clear();
+        self.places.extend(places);
+        self.smoothing.add(&mut self.face, &self.places);
         let group = &mut self.groups[group].triangles;
         self.numbers.clear();
-        self.places.clear();
-        for &corner in &self.face {
-            self.numbers.push(group.number(corner));
-            self.places.push(self.positions[corner.0 as usize]);
-        }
+        let numbers = self.face.iter().map(|&corner| group.number(corner));
+        self.numbers.extend(numbers);
         polygons.cut(&self.places, |triangle| {
             group.indices.extend(triangle.map(|i| self.numbers[i]));
         });
@@ -381,7 +385,8 @@ impl File {
         let mut attributes = json!({ "POSITION": builder.vectors(&positions) });
         let with_normal = corners.iter().filter(|c| c.2.is_some()).count();
         if with_normal == corners.len() {
-            let of = |c: &Corner| c.2.map_or([0.0; 3], |i| self.normals[i as usize]);
+            let normal = |i| self.smoothing.normal(i, &self.normals);
+            let of = |c: &Corner| c.2.map_or([0.0; 3], normal);
             let normals: Vec<[f32; 3]> = corners.iter().map(of).collect();
             attributes["NORMAL"] = json!(builder.vectors(&normals));
         } else if with_normal > 0 {
