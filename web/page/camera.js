@@ -115,6 +115,8 @@ export class Camera {
     canvas.addEventListener('pointerup', release);
     canvas.addEventListener('pointercancel', release);
     canvas.addEventListener('pointermove', (event) => {
+      // Nobody tells the page of a button that is let go in a context menu.
+      if (!event.buttons) release(event);
       const before = this.pointers.get(event.pointerId);
       if (!before) return;
       const now = [event.clientX, event.clientY];

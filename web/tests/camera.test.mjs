@@ -77,3 +77,17 @@ test('a scene\'s field of view and near plane stay while the camera moves', () =
   const { fov_y_deg, near_m } = camera.place();
   assert.deepEqual([fov_y_deg, near_m], [33, 0.00006]);
 });
+
+test('a button that was let go unseen turns the camera no further', () => {
+  const heard = {};
+  const canvas = { addEventListener: (type, does) => { heard[type] = does; }, setPointerCapture() {}, clientHeight: 100 };
+  const camera = new Camera(canvas, () => {});
+  const pointer = (type, clientX, buttons) => heard[type]({ pointerId: 1, clientX, clientY: 0, buttons });
+  pointer('pointerdown', 0, 2);
+  pointer('pointermove', 10, 2);
+  const turned = camera.yaw;
+  assert.notEqual(turned, 0);
+  pointer('pointermove', 30, 0);
+  pointer('pointermove', 50, 1);
+  assert.equal(camera.yaw, turned);
+});
