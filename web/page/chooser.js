@@ -19,7 +19,7 @@ export function applySettings() {
  * frame until it can: no picture is drawn that its names do not describe.
  */
 export function tellSettings() {
-  if (!page.unapplied) return;
+  if (!page.unapplied || !page.viewer) return;
   const { reference, chosen } = page.settings.sides;
   page.viewer.set_settings(JSON.stringify(reference), JSON.stringify(chosen));
   page.unapplied = false;

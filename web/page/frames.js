@@ -5,7 +5,7 @@ import { applySettings, framesToSettle, tellSettings } from './chooser.js';
 import { showFigures, showFooting } from './figures.js';
 import { writeLink } from './link.js';
 import { $, page, redraw, say, wait } from './page.js';
-import { hasStopped, loadRenderer, orLost, orStopped } from './renderer.js';
+import { hasStopped, isLost, loadRenderer, orLost, orStopped } from './renderer.js';
 import { showFirst, showScene } from './scenes.js';
 
 /** Even widths: side by side each eye has half. */
@@ -76,7 +76,7 @@ export async function turn(now) {
 async function mend(cause) {
   if (hasStopped(cause)) return restart(cause, true);
   say(String(cause));
-  if (!/lost/i.test(String(cause))) return;
+  if (!isLost(cause)) return;
   await reopen('Opening the graphics device again…', async () => {}, page.home && page.camera.place());
 }
 

@@ -20,9 +20,12 @@ export function hasStopped(cause) {
   return cause instanceof WebAssembly.RuntimeError;
 }
 
-/** Whether the viewer says that its device is gone; other sentences may hold the word in a scene's name. */
+/** Sentences of a device that is gone; others may hold the word in the name of a scene or the value of a setting. */
+const LOST = /^the graphics (device was lost|API reported .*\blost\b)|^the canvas gives no picture to draw into: Lost/i;
+
+/** Whether the viewer says that its device is gone. */
 export function isLost(cause) {
-  return String(cause).startsWith('the graphics device was lost');
+  return LOST.test(String(cause));
 }
 
 /**
@@ -49,6 +52,7 @@ export function orStopped(promise) {
 export function orLost(call) {
   return new Promise((done, failed) => {
     if (page.lost) throw page.lost;
+    if (!page.viewer) throw 'No graphics device is open. Reload the page to try again.';
     page.fail = failed;
     orStopped(call()).then(done, failed);
   });

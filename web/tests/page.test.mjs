@@ -395,6 +395,37 @@ test('a lost device is opened again', async () => {
   await page.context().close();
 });
 
+test('a setting that names the word of a lost device opens none', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=culling&right.display=lost', SMALL);
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /display.*lost/);
+  await page.evaluate(() => { window.foveal.viewer.mark = true; window.foveal.stale = true; });
+  await page.waitForTimeout(1000);
+  assert.ok(await page.evaluate(() => window.foveal.viewer.mark));
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
+test('where no device can be opened again the page says so, whatever is asked of it', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
+  await settled(page);
+  await page.evaluate(() => {
+    const { foveal } = window;
+    foveal.Viewer = { open: async () => { throw 'the browser found no graphics adapter'; } };
+    foveal.viewer.lose_device();
+    foveal.stale = true;
+  });
+  await page.waitForFunction(() => document.getElementById('messages').textContent.includes('no graphics adapter. Reload the page'));
+  for (const ask of [() => page.locator('#save').click(), () => page.locator('#scene').selectOption('demo:1000')]) {
+    await page.locator('.message button').click();
+    await ask();
+    await page.locator('.message').waitFor();
+    assert.match(await page.locator('.message').textContent(), /No graphics device is open\. Reload the page/);
+  }
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
 test('a picture that cannot be saved is said, and the page goes on', async () => {
   const { page, said } = await site.visit('#scene=cornell&scale=0.25', SMALL);
   const first = await picture(page);
