@@ -3,6 +3,7 @@
 import { Camera } from './camera.js';
 import { applySettings, framesToSettle, tellSettings } from './chooser.js';
 import { showFigures, showFooting } from './figures.js';
+import { gazeAt } from './gaze.js';
 import { writeLink } from './link.js';
 import { $, page, redraw, say, wait } from './page.js';
 import { hasStopped, isLost, loadRenderer, orLost, orStopped } from './renderer.js';
@@ -146,7 +147,7 @@ export async function openViewer() {
 function follow(event) {
   if (!page.gaze || !page.technique.gaze || page.camera.pointers.size) return;
   const box = $('stage').getBoundingClientRect();
-  const gaze = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
-  page.settings.set('chosen', 'gaze', gaze.map((v) => Math.round(v * 1000) / 1000));
+  const place = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+  page.settings.set('chosen', 'gaze', gazeAt(place, page.settings.sides.chosen));
   applySettings();
 }
