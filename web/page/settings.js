@@ -64,7 +64,7 @@ function parse(entry, text) {
     case 'choice':
       return entry.names.includes(text) ? text : undefined;
     case 'integer':
-      return /^-?\d+$/.test(text) ? Number(text) : undefined;
+      return /^-?\d+$/.test(text) && text >= entry.least && text <= entry.most ? Number(text) : undefined;
     case 'number':
       return text !== '' && Number.isFinite(Number(text)) ? Number(text) : undefined;
     case 'place': {

@@ -7,7 +7,7 @@ import { Settings } from '../page/settings.js';
 const TABLE = [
   { key: 'aa', kind: 'choice', names: ['none', 'msaa'] },
   { key: 'culling', kind: 'choice', names: ['auto', 'off'] },
-  { key: 'samples', kind: 'integer' },
+  { key: 'samples', kind: 'integer', least: 1, most: 16 },
   { key: 'gaze', kind: 'place' },
 ];
 const DEFAULTS = { aa: 'none', culling: 'auto', samples: 4, gaze: [0.5, 0.5] };
@@ -39,4 +39,12 @@ test('a link holds what is changed, and nothing that is the default', () => {
   for (const name of ['left.samples', 'left.aa', 'right.culling']) assert.equal(link.has(name), false, name);
   // A link's meaning does not hang on what a later page's technique sets.
   assert.equal(link.get('right.aa'), 'msaa');
+});
+
+test('a number that no control can be set to is not read', () => {
+  for (const [text, unread] of [['16', []], ['17', ['right.samples=17']], ['-5', ['right.samples=-5']], ['4.5', ['right.samples=4.5']]]) {
+    const settings = new Settings(DEFAULTS, TABLE);
+    assert.deepEqual(settings.read(new URLSearchParams({ 'right.samples': text })), unread);
+    assert.equal(settings.sides.chosen.samples, unread.length ? 4 : 16);
+  }
 });
