@@ -97,7 +97,9 @@ export function wireScenes() {
     event.preventDefault();
     over = 0;
     $('drop').hidden = true;
-    const [file] = event.dataTransfer.files;
+    const dropped = [...event.dataTransfer.files];
+    // A scene may come with files that lie beside it.
+    const file = dropped.find(({ name }) => /\.(glb|gltf)$/i.test(name)) ?? dropped[0];
     if (file) showFile(file);
   });
 }

@@ -28,12 +28,13 @@ export function triangle() {
   return Buffer.concat([head, padded, chunk, Buffer.from(positions.buffer)]);
 }
 
-/** Drops a file onto the page, as a user would. */
-export async function drop(page, name, bytes) {
-  await page.evaluate(({ name, text }) => {
+/** Drops a file onto the page, as a user would, with empty files of other names before it. */
+export async function drop(page, name, bytes, before = []) {
+  await page.evaluate(({ name, text, before }) => {
     const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
     const dataTransfer = new DataTransfer();
+    for (const other of before) dataTransfer.items.add(new File([], other));
     dataTransfer.items.add(new File([bytes], name));
     window.dispatchEvent(new DragEvent('drop', { dataTransfer, bubbles: true, cancelable: true }));
-  }, { name, text: bytes.toString('base64') });
+  }, { name, text: bytes.toString('base64'), before });
 }

@@ -323,6 +323,9 @@ test('a dropped .glb is shown; a broken one is named, and the page goes on', asy
   await page.waitForFunction(() => window.foveal.scene.name === 'triangle.glb');
   const again = redPixels(await picture(page, false));
   assert.equal(again, red);
+  // Of several files the scene is shown.
+  await drop(page, 'second.glb', triangle(), ['bark.png', 'tree.bin']);
+  await page.waitForFunction(() => document.getElementById('scene').value === 'second.glb');
   assert.equal(await page.locator('.message').count(), 0);
   assert.deepEqual(said, []);
   await page.context().close();
