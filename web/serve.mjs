@@ -58,7 +58,15 @@ export function serve(port, folder = DIST) {
 }
 
 if (import.meta.url === pathToFileURL(process.argv[1]).href) {
-  const port = Number(process.argv[2] ?? 8000);
-  const server = await serve(port, resolve(process.argv[3] ?? DIST));
+  const words = process.argv[2] ?? '8000';
+  const port = /^\d+$/.test(words) ? Number(words) : NaN;
+  const fail = (cause) => {
+    console.error(`web/serve.mjs: ${cause}`);
+    process.exit(1);
+  };
+  if (!(port < 65536)) fail(`the port is ${words}; it must be a number from 0 to 65535`);
+  const server = await serve(port, resolve(process.argv[3] ?? DIST)).catch((cause) => fail(cause.code === 'EADDRINUSE'
+    ? `port ${port} is in use; name another: node web/serve.mjs 8001`
+    : `port ${port} cannot be used: ${cause.message}`));
   console.log(`http://localhost:${server.address().port}/`);
 }

@@ -2,10 +2,12 @@
 
 import { test } from 'node:test';
 import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
 import { mkdtemp, mkdir, rm, writeFile } from 'node:fs/promises';
 import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
 import { serve } from '../serve.mjs';
 
 /** Sends a request line as it is and resolves to the status, or null where the server hangs up. */
@@ -51,5 +53,22 @@ test('malformed URLs are answered with 400, and the server goes on', async () =>
   } finally {
     server.close();
     await rm(outer, { recursive: true });
+  }
+});
+
+test('a port that cannot be used is said in a line', async () => {
+  const server = await serve(0, tmpdir());
+  const used = String(server.address().port);
+  const program = fileURLToPath(new URL('../serve.mjs', import.meta.url));
+  try {
+    for (const [port, cause] of [[used, `port ${used} is in use`], ['eight', 'the port is eight'], ['70000', 'the port is 70000']]) {
+      const { code, said } = await new Promise((done) => {
+        execFile(process.execPath, [program, port], (error, _, said) => done({ code: error?.code, said }));
+      });
+      assert.equal(code, 1);
+      assert.ok(said.startsWith(`web/serve.mjs: ${cause}`) && said.trim().split('\n').length === 1, said);
+    }
+  } finally {
+    server.close();
   }
 });
