@@ -29,6 +29,7 @@ async function drawFrame() {
   if (page.moved) writeLink();
   page.moved = false;
   const cost = JSON.parse(await orLost(() => page.viewer.draw(JSON.stringify(request))));
+  losses = 0;
   page.unsettled -= 1;
   page.frames += 1;
   page.firstFrameMs ??= performance.now();
@@ -73,11 +74,20 @@ export async function turn(now) {
   requestAnimationFrame(turn);
 }
 
+/** Devices that were lost since the last frame. */
+let losses = 0;
+
 /** After a failed frame: a lost device is opened anew, once; all else waits for the next change. */
 async function mend(cause) {
   if (hasStopped(cause)) return restart(cause, true);
   say(String(cause));
   if (!isLost(cause)) return;
+  losses += 1;
+  if (losses > 1) {
+    // It may be the frame itself that a device is lost by.
+    losses = 0;
+    return say(`${cause}. It was lost again before a frame was drawn; the next change opens it once more`);
+  }
   await reopen('Opening the graphics device again…', async () => {}, page.home && page.camera.place());
 }
 

@@ -398,6 +398,25 @@ test('a lost device is opened again', async () => {
   await page.context().close();
 });
 
+test('a device that every frame loses is opened again once, and once more at the next change', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
+  await settled(page);
+  await page.evaluate(() => {
+    const { Viewer } = window.foveal;
+    window.opened = 0;
+    window.foveal.Viewer = { open: (canvas) => { window.opened += 1; return Viewer.open(canvas); } };
+    Viewer.prototype.draw = async () => { throw 'the graphics device was lost: a test'; };
+  });
+  for (const opened of [1, 2]) {
+    await page.evaluate(() => { window.foveal.stale = true; });
+    await page.locator('.message', { hasText: 'lost again' }).waitFor();
+    await page.waitForTimeout(1000);
+    assert.equal(await page.evaluate(() => window.opened), opened);
+    await page.locator('.message button').click();
+  }
+  await page.context().close();
+});
+
 test('a setting that names the word of a lost device opens none', async () => {
   const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=culling&right.display=lost', SMALL);
   await page.locator('.message').waitFor();
