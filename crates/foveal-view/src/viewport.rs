@@ -9,6 +9,7 @@ use foveal::{DebugView, RateSource};
 use crate::app::App;
 use crate::app::drops::endings;
 use crate::navigator::Hands;
+use crate::needs::{Switch, of_culling};
 use crate::{boxes, legend, look};
 
 /// The greys of the culler's depth: from its own nearest (white) to its farthest, logarithmic;
@@ -208,7 +209,10 @@ fn gaze(app: &App, ui: &egui::Ui, rect: Rect) {
 /// What the colours mean, at the lower left.
 fn legends(app: &App, ui: &mut egui::Ui, place: Rect) {
     let view = app.settings.picture.view;
-    if view == DebugView::Final && !app.display.boxes && !app.display.frozen {
+    let works = |switch| of_culling(switch, &app.settings).is_none();
+    let is_frozen = app.display.frozen && works(Switch::Freeze);
+    let has_boxes = app.display.boxes && works(Switch::Boxes);
+    if view == DebugView::Final && !has_boxes && !is_frozen {
         return;
     }
     egui::Area::new(ui.scope_id().with("legends"))
@@ -217,13 +221,13 @@ fn legends(app: &App, ui: &mut egui::Ui, place: Rect) {
         .constrain_to(place)
         .interactable(false)
         .show(ui.ctx(), |ui| {
-            if app.display.frozen {
+            if is_frozen {
                 look::strip_frame().show(ui, |ui| {
                     let text = "Culling is frozen: what was found is drawn from anywhere (C)";
                     ui.label(RichText::new(text).color(look::SMALL));
                 });
             }
-            if app.display.boxes {
+            if has_boxes {
                 legend::of_boxes(ui);
             }
             legend::of_view(ui, &app.settings);
@@ -302,5 +306,31 @@ fn messages(app: &mut App, ui: &egui::Ui, place: Rect) {
         });
     if let Some(index) = dismissed {
         app.messages.remove(index);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use foveal::{Culling, Settings};
+
+    use crate::app::tests::{Pass, SIZES, loaded, texts};
+
+    #[test]
+    fn legends_are_of_what_is_drawn() {
+        for (culling, has_boxes) in [(Culling::Off, false), (Culling::Frustum, true)] {
+            let mut app = loaded();
+            app.use_settings(&Settings::default().with(|s| s.culling.mode = culling));
+            (app.display.frozen, app.display.boxes) = (true, true);
+            let context = egui::Context::default();
+            let pass = Pass::new(&context, SIZES[0]);
+            for _ in 0..3 {
+                pass.show(&mut app, Vec::new());
+            }
+            let said = texts(&pass.show(&mut app, Vec::new()));
+            for words in ["Culling is frozen", "too small"] {
+                let is_said = said.iter().any(|text| text.says.starts_with(words));
+                assert_eq!(is_said, has_boxes, "{culling:?}: {words}");
+            }
+        }
     }
 }

@@ -49,7 +49,7 @@ pub(crate) fn app() -> App {
 }
 
 /// A scene as the thread would tell of it, with two clips.
-fn scene() -> LoadedScene {
+pub(crate) fn scene() -> LoadedScene {
     let scene = generate::cornell();
     LoadedScene {
         name: "cornell".to_owned(),
@@ -70,7 +70,7 @@ fn scene() -> LoadedScene {
 }
 
 /// An app with a scene and a frame with large figures.
-pub(super) fn loaded() -> App {
+pub(crate) fn loaded() -> App {
     let mut app = app();
     let context = egui::Context::default();
     app.adapter = Some(AdapterStats {
@@ -114,18 +114,18 @@ pub(super) fn loaded() -> App {
 }
 
 /// A window's size in points, its scale, and the keys that are pressed.
-pub(super) struct Pass<'a> {
+pub(crate) struct Pass<'a> {
     context: &'a egui::Context,
     size: Vec2,
 }
 
 impl<'a> Pass<'a> {
-    pub(super) fn new(context: &'a egui::Context, size: Vec2) -> Self {
+    pub(crate) fn new(context: &'a egui::Context, size: Vec2) -> Self {
         crate::look::apply(context);
         Self { context, size }
     }
 
-    pub(super) fn show(&self, app: &mut App, events: Vec<Event>) -> egui::FullOutput {
+    pub(crate) fn show(&self, app: &mut App, events: Vec<Event>) -> egui::FullOutput {
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size)),
             events,
@@ -152,14 +152,14 @@ impl<'a> Pass<'a> {
 
 /// A text on the screen: what it says, where it is, what of it can be seen, whether it is cut.
 #[derive(Debug)]
-struct Text {
-    says: String,
+pub(crate) struct Text {
+    pub(crate) says: String,
     rect: Rect,
     clip: Rect,
     is_elided: bool,
 }
 
-fn texts(output: &egui::FullOutput) -> Vec<Text> {
+pub(crate) fn texts(output: &egui::FullOutput) -> Vec<Text> {
     fn collect(shape: &egui::Shape, clip: Rect, found: &mut Vec<Text>) {
         match shape {
             egui::Shape::Text(text) => found.push(Text {
@@ -212,7 +212,7 @@ fn faults(output: &egui::FullOutput, size: Vec2) -> Vec<String> {
 
 /// Sizes in points: the smallest window, as wide with all that its panels scroll to, the usual one,
 /// a large screen at twice the size.
-pub(super) const SIZES: [Vec2; 4] = [
+pub(crate) const SIZES: [Vec2; 4] = [
     Vec2::new(960.0, 540.0),
     Vec2::new(960.0, 4000.0),
     Vec2::new(1280.0, 800.0),
