@@ -59,14 +59,14 @@ fn host(args: &Args) -> anyhow::Result<Host> {
     let options = args.import.options();
     let (shown, adapter) = (clipless(args.import.shown_flags()), args.adapter.clone());
     let named = first.clone();
-    let texture_flag = args.import.texture_flag();
+    let reading = args.import.reading_flags();
     let scene_flags = move |name: &str| {
         let mut flags = if name == named {
             shown.clone()
         } else {
             Vec::new()
         };
-        flags.extend(texture_flag.map(str::to_owned));
+        flags.extend(reading.iter().cloned());
         if point_lights > 0 {
             flags.extend(["--point-lights".to_owned(), point_lights.to_string()]);
         }

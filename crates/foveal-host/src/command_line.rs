@@ -24,7 +24,8 @@ pub fn exact_camera(camera: &Camera) -> String {
 #[must_use]
 pub fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,+=@%#".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
+    // In front of a word # begins a comment, and zsh takes = for a command's path.
+    if !word.is_empty() && !word.starts_with(['#', '=']) && word.chars().all(plain) {
         word.to_owned()
     } else {
         format!("'{}'", word.replace('\'', r"'\''"))
@@ -41,5 +42,8 @@ mod tests {
         assert_eq!(quoted("my scene.glb"), "'my scene.glb'");
         assert_eq!(quoted("it's"), r"'it'\''s'");
         assert_eq!(quoted(""), "''");
+        assert_eq!(quoted("#2=a.glb"), "'#2=a.glb'");
+        assert_eq!(quoted("=a.glb"), "'=a.glb'");
+        assert_eq!(quoted("a#2=b.glb"), "a#2=b.glb");
     }
 }

@@ -100,6 +100,29 @@ impl ImportArgs {
         flags
     }
 
+    /// The flags that say how any scene is read, as a command has them.
+    pub fn reading_flags(&self) -> Vec<String> {
+        let side = self.max_texture_size.map(u64::from);
+        let mut flags: Vec<String> = self.texture_flag().map(str::to_owned).into_iter().collect();
+        for (flag, value) in [
+            ("--max-texture-memory", self.max_texture_memory),
+            ("--max-texture-size", side),
+            ("--max-vertices", self.max_vertices),
+            ("--max-instances", self.max_instances),
+            ("--max-triangles", self.max_triangles),
+            ("--max-file-size", self.max_file_size),
+            ("--max-expansion", self.max_expansion),
+        ] {
+            if let Some(value) = value {
+                flags.extend([flag.to_owned(), value.to_string()]);
+            }
+        }
+        if self.outside_files {
+            flags.push("--outside-files".to_owned());
+        }
+        flags
+    }
+
     /// The importer's options.
     pub fn options(&self) -> LoadOptions {
         let d = LoadOptions::default();
@@ -221,6 +244,19 @@ mod tests {
             ..LoadOptions::default()
         };
         assert_eq!(some, expected);
+    }
+
+    #[test]
+    fn flags_are_written_as_they_are_read() {
+        let words = "foveal --clip Run --variant red --texture-compression=fine --max-texture-memory 1.5GB \
+                     --max-texture-size 64 --max-vertices 7 --max-instances 8 --max-triangles 9 \
+                     --max-file-size 2GiB --max-expansion 10 --outside-files";
+        for words in [words, "foveal", "foveal --max-texture-size 64"] {
+            let line = Line::try_parse_from(words.split(' ')).unwrap().import;
+            let written = [line.shown_flags(), line.reading_flags()].concat();
+            let again = Line::try_parse_from(["foveal".to_owned()].into_iter().chain(written));
+            assert_eq!(again.unwrap().import.options(), line.options(), "{words}");
+        }
     }
 
     #[test]

@@ -14,14 +14,21 @@ pub(crate) fn words(
     camera: &Camera,
     (clip, time_s): (&Clip, f32),
 ) -> Vec<String> {
-    let mut words: Vec<String> = ["foveal", "render", &scene.source, "--output", "picture.png"]
+    let mut words: Vec<String> = ["foveal", "render", &file_word(&scene.source)]
+        .into_iter()
+        .chain(["--output", "picture.png"])
         .map(str::to_owned)
-        .to_vec();
+        .collect();
     let is_animated = scene.duration_s(clip) > 0.0;
-    // A camera of the scene is said by its number, unless animation may have moved it.
+    // A camera of the scene is said by its number, unless animation may have moved it. Even a clip
+    // without length has a pose of its own.
+    let is_moved = is_animated || *clip != scene.clip;
     let of_scene = scene.cameras.iter().position(|c| c == camera);
-    match of_scene.filter(|_| !is_animated) {
-        Some(number) => words.extend(["--camera".to_owned(), number.to_string()]),
+    match of_scene.filter(|_| !is_moved) {
+        Some(number) => {
+            let names = scene.cameras.iter().map(|c| c.name.as_str());
+            words.extend(["--camera".to_owned(), number_word(number, names)]);
+        }
         None => words.extend(["--exact-camera".to_owned(), (host.exact_camera)(camera)]),
     }
     if *clip != Clip::default() {
@@ -39,11 +46,28 @@ pub(crate) fn words(
     words
 }
 
-/// What `--clip` is given: a name that looks like the number would come before it, so that the
-/// number has zeros in front until none does.
+/// A scene's file: a name that begins as a flag does would be taken for one.
+fn file_word(source: &str) -> String {
+    let folder = if source.starts_with('-') { "./" } else { "" };
+    format!("{folder}{source}")
+}
+
+/// What `--clip` is given.
 fn clip_word(clip: &Clip, clips: &[(String, f32)]) -> String {
-    let mut word = clip.to_string();
-    while matches!(clip, Clip::Number(_)) && clips.iter().any(|(name, _)| *name == word) {
+    match clip {
+        Clip::Number(number) => number_word(
+            *number as usize,
+            clips.iter().map(|(name, _)| name.as_str()),
+        ),
+        other => other.to_string(),
+    }
+}
+
+/// A number where a name may stand: a name that looks like it would come before it, so that it has
+/// zeros in front until none does.
+fn number_word<'n>(number: usize, names: impl Iterator<Item = &'n str> + Clone) -> String {
+    let mut word = number.to_string();
+    while names.clone().any(|name| name == word) {
         word.insert(0, '0');
     }
     word
@@ -52,6 +76,14 @@ fn clip_word(clip: &Clip, clips: &[(String, f32)]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::tests::{host, scene};
+
+    /// The command for a camera of the scene, without its last words.
+    fn first_words(scene: &LoadedScene, camera: usize, clip: &Clip) -> String {
+        let camera = &scene.cameras[camera];
+        let words = words(&host(), scene, &Settings::default(), camera, (clip, 0.0));
+        words[2..7].join(" ")
+    }
 
     #[test]
     fn a_clips_number_is_written_as_no_clip_is_named() {
@@ -59,5 +91,42 @@ mod tests {
         assert_eq!(clip_word(&Clip::Number(2), &clips), "002");
         assert_eq!(clip_word(&Clip::Number(1), &clips), "1");
         assert_eq!(clip_word(&Clip::All, &clips), "all");
+    }
+
+    #[test]
+    fn a_cameras_number_is_written_as_no_camera_is_named() {
+        let mut scene = scene();
+        scene.clips.clear();
+        let named = |name: &str| Camera {
+            name: name.to_owned(),
+            ..scene.cameras[0].clone()
+        };
+        scene.cameras = ["1", "door", "0"].map(named).to_vec();
+        for (camera, word) in [(0, "00"), (1, "01"), (2, "2")] {
+            let first = first_words(&scene, camera, &Clip::default());
+            assert_eq!(
+                first,
+                format!("cornell --output picture.png --camera {word}")
+            );
+        }
+    }
+
+    #[test]
+    fn a_camera_that_another_clip_may_have_moved_is_said_exactly() {
+        let mut scene = scene();
+        scene.clips = ["still", "pose"]
+            .map(|name| (name.to_owned(), 0.0))
+            .to_vec();
+        let first = |clip| first_words(&scene, 0, &Clip::Number(clip));
+        assert!(first(0).contains("--camera 0"), "{}", first(0));
+        assert!(first(1).contains("--exact-camera"), "{}", first(1));
+    }
+
+    #[test]
+    fn a_files_name_is_not_taken_for_a_flag() {
+        let mut scene = scene();
+        scene.source = "-x.glb".to_owned();
+        let first = first_words(&scene, 0, &Clip::default());
+        assert!(first.starts_with("./-x.glb --output"), "{first}");
     }
 }

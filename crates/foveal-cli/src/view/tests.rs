@@ -150,14 +150,18 @@ fn flags_of_one_scene_are_not_those_of_another_and_the_clip_is_the_windows() {
         "red",
         "--point-lights",
         "3",
+        "--max-texture-size",
+        "64",
+        "--outside-files",
     ];
     let Command::View(args) = Cli::try_parse_from(words).unwrap().command else {
         panic!("these are words for the window");
     };
     let host = super::host(&args).unwrap();
     let flags = |scene| (host.scene_flags)(scene).join(" ");
-    assert_eq!(flags("a.glb"), "--variant red --point-lights 3");
-    assert_eq!(flags("b.glb"), "--point-lights 3");
+    let of_both = "--max-texture-size 64 --outside-files --point-lights 3";
+    assert_eq!(flags("a.glb"), format!("--variant red {of_both}"));
+    assert_eq!(flags("b.glb"), of_both);
 }
 
 #[test]
