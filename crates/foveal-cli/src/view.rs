@@ -34,8 +34,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME|NUMBER")]
     adapter: Option<String>,
 
-    /// Size of the window in pixels
-    #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1280x720")]
+    /// Size of the window in pixels, at most 16384 a side
+    #[arg(long, value_name = "WxH", value_parser = values::window, default_value = "1280x720")]
     window: (u32, u32),
 
     #[command(flatten)]

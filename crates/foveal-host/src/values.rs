@@ -21,6 +21,20 @@ pub fn size(text: &str) -> Result<(u32, u32), String> {
     }
 }
 
+/// Most pixels of a window's side: what graphics devices draw.
+const MOST_WINDOW: u32 = 16_384;
+
+/// Width and height of a window in pixels.
+pub fn window(text: &str) -> Result<(u32, u32), String> {
+    let (width, height) = size(text)?;
+    let sides = 1..=MOST_WINDOW;
+    if sides.contains(&width) && sides.contains(&height) {
+        Ok((width, height))
+    } else {
+        Err(format!("a window has 1 to {MOST_WINDOW} pixels a side"))
+    }
+}
+
 /// Any finite number.
 pub fn finite(text: &str) -> Result<f32, String> {
     match text.trim().parse::<f32>() {
@@ -216,6 +230,7 @@ mod tests {
     #[test]
     fn good_values_are_read() {
         assert_eq!(size("1920x1080"), Ok((1920, 1080)));
+        assert_eq!(window("16384x1"), Ok((16_384, 1)));
         assert_eq!(vec3("-1, 2.5,3e1"), Ok(Vec3::new(-1.0, 2.5, 30.0)));
         assert_eq!(frames("7"), Ok(0..7));
         assert_eq!(frames("5..7"), Ok(5..7));
@@ -241,6 +256,9 @@ mod tests {
     fn bad_values_are_refused() {
         for text in ["", "12", "x", "1x", "-1x2", "1.5x2", "1x2x3"] {
             assert!(size(text).is_err(), "{text}");
+        }
+        for text in ["1280", "0x720", "1280x0", "16385x720", "1280x70000"] {
+            assert!(window(text).is_err(), "{text}");
         }
         for text in [
             "", "1,2", "1,2,3,4", "1,2,nan", "inf,0,0", "1,,2", "1e99,0,0",
