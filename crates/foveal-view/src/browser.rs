@@ -117,10 +117,11 @@ impl Browser {
         }
     }
 
-    /// What Enter does: follows a path that was typed, else the chosen line.
+    /// What Enter does: follows a path that was typed, else the chosen line. A line below the first
+    /// was chosen by hand; a dot alone lists what is hidden.
     pub(crate) fn accept(&mut self, files: &dyn Files) -> Choice {
         let typed = self.typed.trim();
-        if !typed.is_empty() {
+        if self.chosen == 0 && !["", "."].contains(&typed) {
             let path = self.folder.join(typed);
             if files.is_folder(&path) {
                 self.enter(files, path);
@@ -160,13 +161,15 @@ pub(crate) mod tests {
 
         fn list(&self, folder: &Path) -> anyhow::Result<Listing> {
             let names = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect();
+            // `a/.` is `a`.
+            let folder: PathBuf = folder.components().collect();
             Ok(match folder.to_str() {
                 Some("/home/eva") => Listing {
                     folders: names(&[".cache", "models", "pictures"]),
                     scenes: names(&["Castle.glb", "room.gltf"]),
                 },
                 Some("/home") => Listing {
-                    folders: names(&["adam", "eva"]),
+                    folders: names(&["adam", "eva", "evan"]),
                     scenes: Vec::new(),
                 },
                 Some("/home/eva/models") => Listing::default(),
@@ -248,6 +251,24 @@ pub(crate) mod tests {
         browser.enter_parent(&files);
         assert_eq!(browser.folder(), Path::new("/home"));
         assert!(browser.fault.is_some());
+    }
+
+    #[test]
+    fn a_line_that_was_chosen_comes_before_what_was_typed() {
+        let (files, mut browser) = browser();
+        let tried = |browser: &mut Browser| {
+            assert_eq!(browser.accept(&files), Choice::Stays);
+            browser.fault.take().unwrap_or_default()
+        };
+        browser.typed = ".".to_owned();
+        assert!(tried(&mut browser).contains(".cache"));
+        browser.enter(&files, "/home".into());
+        browser.typed = "eva".to_owned();
+        browser.step(1);
+        assert!(tried(&mut browser).contains("evan"));
+        browser.step(-1);
+        assert_eq!(tried(&mut browser), "");
+        assert_eq!(browser.folder(), Path::new("/home/eva"));
     }
 
     #[test]
