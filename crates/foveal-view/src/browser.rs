@@ -189,6 +189,10 @@ pub(crate) mod tests {
             scene.to_owned()
         }
 
+        fn memory(&self) -> String {
+            "/home/eva/window.toml".to_owned()
+        }
+
         fn recall(&self) -> anyhow::Result<String> {
             Ok(self.memory.lock().unwrap().clone())
         }

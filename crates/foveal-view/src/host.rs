@@ -89,6 +89,9 @@ pub trait Files: Send + Sync {
     /// The one name of a scene: a generated scene's own, a file's absolute path.
     fn full_name(&self, scene: &str) -> String;
 
+    /// Where the text that is remembered lies, as messages say it.
+    fn memory(&self) -> String;
+
     /// The text that was remembered last; empty at first.
     ///
     /// # Errors

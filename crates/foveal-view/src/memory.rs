@@ -28,7 +28,8 @@ impl Memory {
     /// What the host kept.
     pub(crate) fn recalled(files: &dyn Files) -> anyhow::Result<Self> {
         let text = files.recall()?;
-        Self::read(&text).context("what the window remembers cannot be read")
+        let cannot = || format!("what the window remembers in '{}' is wrong", files.memory());
+        Self::read(&text).with_context(cannot)
     }
 
     /// Changes what is remembered and has the host keep it.
@@ -122,6 +123,19 @@ mod tests {
         assert_eq!(of_cornell, [(9, "perspective,2")]);
         memory.set_bookmark("cornell", 9, None);
         assert_eq!(memory.bookmarks("cornell").count(), 0);
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_named_and_stays() {
+        let files = crate::browser::tests::Imagined::default();
+        files.remember("recent = [").unwrap();
+        let changed = Memory::default().change(&files, |memory| memory.opened("cornell"));
+        let error = format!("{:#}", changed.unwrap_err());
+        assert!(
+            error.contains("'/home/eva/window.toml'") && error.contains("line 1"),
+            "{error}"
+        );
+        assert_eq!(files.recall().unwrap(), "recent = [");
     }
 
     #[test]

@@ -85,6 +85,11 @@ impl Files for Folders {
         path.map_or_else(|_| scene.to_owned(), |path| path.display().to_string())
     }
 
+    fn memory(&self) -> String {
+        let file = self.memory.as_ref();
+        file.map_or_else(String::new, |file| file.display().to_string())
+    }
+
     fn recall(&self) -> anyhow::Result<String> {
         let Some(file) = &self.memory else {
             return Ok(String::new());
