@@ -1,5 +1,8 @@
 //! Moving the camera: flying through the scene, or orbiting around a point of it.
 
+#[cfg(test)]
+mod tests;
+
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use foveal_scene::{Aabb, Camera, Projection};
@@ -11,6 +14,8 @@ const TURN_RAD: f32 = 0.005;
 const STEEPEST_RAD: f32 = 1.55;
 /// Cosine of the pitch below which a heading is that of the axis to the right.
 const STEEP: f32 = 1e-3;
+/// Radians that are no lean: what numbers of 32 bits are rounded by.
+const LEAST_ROLL_RAD: f32 = 1e-4;
 /// Radians a second that an arrow key turns.
 const KEY_TURN_RAD_S: f32 = 1.2;
 
@@ -84,6 +89,8 @@ pub(crate) struct Navigator {
     bounds: Aabb,
     yaw_rad: f32,
     pitch_rad: f32,
+    /// How far the picture's right side is turned upwards.
+    roll_rad: f32,
     /// Distance of the point that is orbited.
     radius_m: f32,
 }
@@ -101,6 +108,7 @@ impl Navigator {
             speed_m_s: (extent_m * 0.08).clamp(1e-3, 50.0),
             yaw_rad: 0.0,
             pitch_rad: 0.0,
+            roll_rad: 0.0,
             radius_m: extent_m,
             camera: camera.clone(),
             bounds,
@@ -124,6 +132,12 @@ impl Navigator {
             f32::atan2(-forward.x, -forward.z)
         };
         self.pitch_rad = forward.y.clamp(-1.0, 1.0).asin();
+        self.roll_rad = 0.0;
+        let (level, right) = (self.turned(), camera.world_from_view.x_axis);
+        let roll_rad = f32::atan2(right.dot(level.y_axis), right.dot(level.x_axis));
+        if roll_rad.abs() > LEAST_ROLL_RAD {
+            self.roll_rad = roll_rad;
+        }
         self.camera = camera;
     }
 
@@ -164,12 +178,15 @@ impl Navigator {
         let [this, opposite] = side.angles();
         let is_there = [self.yaw_rad, self.pitch_rad] == this;
         [self.yaw_rad, self.pitch_rad] = if is_there { opposite } else { this };
+        self.roll_rad = 0.0;
         self.place(self.camera.eye());
         self.frame(bounds, aspect);
     }
 
     fn turned(&self) -> Mat4 {
-        Mat4::from_rotation_y(self.yaw_rad) * Mat4::from_rotation_x(self.pitch_rad)
+        Mat4::from_rotation_y(self.yaw_rad)
+            * Mat4::from_rotation_x(self.pitch_rad)
+            * Mat4::from_rotation_z(self.roll_rad)
     }
 
     /// Moves; true if anything changed.
@@ -200,6 +217,8 @@ impl Navigator {
         if by == Vec2::ZERO {
             return;
         }
+        // Right and down in the picture, which may lean.
+        let by = Vec2::from_angle(-self.roll_rad).rotate(by);
         self.yaw_rad -= by.x * TURN_RAD;
         let pitch = self.pitch_rad - by.y * TURN_RAD;
         self.pitch_rad = pitch.clamp(-STEEPEST_RAD, STEEPEST_RAD);
@@ -248,231 +267,5 @@ impl Navigator {
         self.radius_m = self.radius_m.max(1e-4);
         self.place(pivot + turned.z_axis.truncate() * self.radius_m);
         true
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn navigator() -> Navigator {
-        let camera = Camera::look_at(Vec3::new(3.0, 2.0, 5.0), Vec3::ZERO, Vec3::Y, 1.0);
-        let bounds = Aabb {
-            min: Vec3::splat(-1.0),
-            max: Vec3::splat(1.0),
-        };
-        Navigator::new(camera, bounds)
-    }
-
-    fn forward(navigator: &Navigator) -> Vec3 {
-        -navigator.camera().world_from_view.z_axis.truncate()
-    }
-
-    #[test]
-    fn a_camera_that_is_not_moved_stays_to_the_bit() {
-        let mut navigator = navigator();
-        let before = navigator.camera().clone();
-        assert!(!navigator.step(&Hands::default()));
-        assert_eq!(*navigator.camera(), before);
-    }
-
-    #[test]
-    fn flying_forward_goes_where_the_camera_looks() {
-        let mut navigator = navigator();
-        let (eye, looks) = (navigator.camera().eye(), forward(&navigator));
-        let hands = Hands {
-            push: Vec3::Z,
-            elapsed_s: 0.5,
-            ..Hands::default()
-        };
-        assert!(navigator.step(&hands));
-        let way = navigator.camera().eye() - eye;
-        assert!((way.normalize() - looks).length() < 1e-4, "{way}, {looks}");
-        assert!((way.length() - 0.5 * navigator.speed_m_s).abs() < 1e-4);
-    }
-
-    #[test]
-    fn shift_moves_four_times_as_far_in_either_mode() {
-        for mode in [Mode::Fly, Mode::Orbit] {
-            let way = |hurry| {
-                let mut navigator = navigator();
-                navigator.mode = mode;
-                let before = navigator.camera().eye();
-                navigator.step(&Hands {
-                    push: Vec3::new(1.0, 1.0, 0.0),
-                    hurry,
-                    elapsed_s: 0.1,
-                    ..Hands::default()
-                });
-                navigator.camera().eye() - before
-            };
-            assert!((way(true) - 4.0 * way(false)).length() < 1e-3, "{mode:?}");
-        }
-    }
-
-    #[test]
-    fn orbiting_keeps_the_distance_and_looks_at_the_pivot() {
-        let mut navigator = navigator();
-        navigator.mode = Mode::Orbit;
-        let distance = navigator.camera().eye().length();
-        for turn in [Vec2::new(100.0, 0.0), Vec2::new(-30.0, 70.0)] {
-            let hands = Hands {
-                turn,
-                ..Hands::default()
-            };
-            assert!(navigator.step(&hands));
-            let eye = navigator.camera().eye();
-            assert!((eye.length() - distance).abs() < 1e-2, "{eye}");
-            assert!((forward(&navigator) + eye.normalize()).length() < 1e-2);
-        }
-    }
-
-    #[test]
-    fn the_middle_button_orbits_while_flying() {
-        let mut flying = navigator();
-        let distance = flying.camera().eye().length();
-        let hands = Hands {
-            orbit: Vec2::new(80.0, 30.0),
-            ..Hands::default()
-        };
-        assert!(flying.step(&hands));
-        assert_eq!(flying.mode, Mode::Fly);
-        let eye = flying.camera().eye();
-        assert!((eye.length() - distance).abs() < 1e-2, "{eye}");
-        assert!((forward(&flying) + eye.normalize()).length() < 1e-2);
-    }
-
-    #[test]
-    fn arrow_keys_turn_and_do_not_move() {
-        let mut navigator = navigator();
-        let (eye, before) = (navigator.camera().eye(), forward(&navigator));
-        let hands = Hands {
-            keys_turn: Vec2::new(1.0, 1.0),
-            elapsed_s: 0.1,
-            ..Hands::default()
-        };
-        assert!(navigator.step(&hands));
-        assert_eq!(navigator.camera().eye(), eye);
-        let after = forward(&navigator);
-        let right = before.cross(Vec3::Y);
-        assert!(
-            after.y > before.y && after.dot(right) > 0.0,
-            "{before} {after}"
-        );
-    }
-
-    #[test]
-    fn what_is_framed_fills_the_picture_and_is_all_in_it() {
-        let bounds = Aabb {
-            min: Vec3::new(4.0, 0.0, -3.0),
-            max: Vec3::new(6.0, 1.0, -2.0),
-        };
-        for aspect in [0.5, 1.0, 2.0] {
-            let mut navigator = navigator();
-            let looks = forward(&navigator);
-            navigator.frame(bounds, aspect);
-            assert!((forward(&navigator) - looks).length() < 1e-4);
-            let clip = navigator.camera().clip_from_world(aspect);
-            let mut largest = 0.0f32;
-            for i in 0..8 {
-                let pick = |bit: usize| [bounds.min, bounds.max][i >> bit & 1][bit];
-                let at = clip * Vec3::new(pick(0), pick(1), pick(2)).extend(1.0);
-                largest = largest.max((at.x / at.w).abs()).max((at.y / at.w).abs());
-            }
-            assert!((0.4..=1.0).contains(&largest), "{aspect}: {largest}");
-        }
-    }
-
-    #[test]
-    fn sides_are_seen_straight_and_again_from_the_back() {
-        let bounds = Aabb {
-            min: Vec3::splat(-1.0),
-            max: Vec3::splat(1.0),
-        };
-        let mut navigator = navigator();
-        for (side, looks, right) in [
-            (Side::Front, Vec3::NEG_Z, Vec3::X),
-            (Side::Right, Vec3::NEG_X, Vec3::NEG_Z),
-            (Side::Top, Vec3::NEG_Y, Vec3::X),
-        ] {
-            navigator.look_from(side, bounds, 1.5);
-            let x = navigator.camera().world_from_view.x_axis.truncate();
-            assert!((forward(&navigator) - looks).length() < 1e-5, "{side:?}");
-            assert!((x - right).length() < 1e-5, "{side:?}");
-            assert!(navigator.camera().eye().dot(looks) < -1.0);
-            navigator.look_from(side, bounds, 1.5);
-            assert!((forward(&navigator) + looks).length() < 1e-5, "{side:?}");
-        }
-    }
-
-    #[test]
-    fn a_camera_that_looks_straight_down_keeps_its_heading() {
-        let bounds = Aabb::new(Vec3::splat(-1.0), Vec3::splat(1.0));
-        let mut navigator = navigator();
-        for turn in [0.0, 1.0, 2.0, 3.0_f32] {
-            for (pitch, up) in [(-FRAC_PI_2, Vec3::NEG_Z), (FRAC_PI_2, Vec3::Z)] {
-                let turned = Mat4::from_rotation_y(turn);
-                let mut camera = navigator.camera().clone();
-                camera.world_from_view = turned * Mat4::from_rotation_x(pitch);
-                navigator.go_to(camera);
-                navigator.frame(bounds, 1.5);
-                let axes = navigator.camera().world_from_view;
-                let [right, up] = [Vec3::X, up].map(|axis| turned.transform_vector3(axis));
-                assert!(axes.x_axis.truncate().distance(right) < 1e-5, "{turn}");
-                assert!(axes.y_axis.truncate().distance(up) < 1e-5, "{turn}");
-            }
-        }
-    }
-
-    #[test]
-    fn from_the_start_the_scene_is_orbited_again() {
-        let mut navigator = navigator();
-        let start = navigator.camera().clone();
-        navigator.mode = Mode::Orbit;
-        let scroll = Hands {
-            scroll: 30.0,
-            ..Hands::default()
-        };
-        navigator.step(&scroll);
-        navigator.go_to(start.clone());
-        let turn = Hands {
-            turn: Vec2::new(200.0, 0.0),
-            ..Hands::default()
-        };
-        navigator.step(&turn);
-        let [distance, before] = [navigator.camera(), &start].map(|c| c.eye().length());
-        assert!((distance - before).abs() < 1e-2, "{distance}, {before}");
-    }
-
-    #[test]
-    fn what_is_small_is_framed_behind_the_near_plane() {
-        let mut navigator = navigator();
-        let bounds = Aabb {
-            min: Vec3::splat(1.0),
-            max: Vec3::splat(1.02),
-        };
-        navigator.frame(bounds, 1.5);
-        let Projection::Perspective { near_m, .. } = navigator.camera().projection else {
-            panic!("the projection is perspective");
-        };
-        let ahead = forward(&navigator);
-        for i in 0..8 {
-            let pick = |bit: usize| [bounds.min, bounds.max][i >> bit & 1][bit];
-            let corner = Vec3::new(pick(0), pick(1), pick(2));
-            let depth = (corner - navigator.camera().eye()).dot(ahead);
-            assert!(depth > near_m, "{depth}, {near_m}");
-        }
-    }
-
-    #[test]
-    fn one_cannot_tumble_over() {
-        let mut navigator = navigator();
-        let hands = Hands {
-            turn: Vec2::new(0.0, -1e4),
-            ..Hands::default()
-        };
-        navigator.step(&hands);
-        let up = navigator.camera().world_from_view.y_axis.truncate();
-        assert!(up.y > 0.0, "{up}");
     }
 }
