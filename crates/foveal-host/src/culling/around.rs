@@ -47,13 +47,18 @@ impl CullingArgs {
 
     /// Switches of a frame that begins now by `clock`, which reads nanoseconds.
     pub fn options<'a>(&self, clock: &'a (dyn Fn() -> u64 + Sync)) -> FrameOptions<'a> {
-        let deadline = |ms: f32| clock() + (f64::from(ms) * 1e6) as u64;
+        let deadline = |ms| deadline_ns(clock(), ms);
         FrameOptions::default()
             .with_occluder_size_threshold(self.occluder_size_threshold)
             .with_occluder_pixels_per_quad(self.occluder_pixels_per_quad)
             .with_occludee_size_threshold(self.occludee_size_threshold)
             .with_budget(self.budget_ms.map(|ms| Budget::new(clock, deadline(ms))))
     }
+}
+
+/// The moment so many milliseconds from `now_ns`; the last of all where there is none so late.
+fn deadline_ns(now_ns: u64, ms: f32) -> u64 {
+    now_ns.saturating_add((f64::from(ms) * 1e6) as u64)
 }
 
 /// Eyes from which a result for `view` is compared with the reference: its own, and with a radius
@@ -79,4 +84,15 @@ pub(super) fn places(view: &View) -> Vec<Eye> {
 fn moved(eye: &Eye, step: [f64; 3]) -> Eye {
     let step = DAffine3::from_translation(DVec3::from_array(step));
     Eye::new(DAffine3::from(eye.world_from_eye) * step, eye.projection)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_budget_without_an_end_is_no_small_one() {
+        assert_eq!(deadline_ns(7, 0.5), 500_007);
+        assert_eq!(deadline_ns(7, f32::MAX), u64::MAX);
+    }
 }

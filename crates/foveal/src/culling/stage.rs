@@ -255,8 +255,8 @@ impl CullingStage {
         };
         let view = view.with_validity_radius(radius_m);
         let budget = clock.as_ref().filter(|_| self.budget_ms > 0.0);
-        let budget =
-            budget.map(|clock| Budget::new(clock, clock() + (self.budget_ms * 1e6) as u64));
+        let budget_ns = (self.budget_ms * 1e6) as u64;
+        let budget = budget.map(|clock| Budget::new(clock, clock().saturating_add(budget_ns)));
         let options = FrameOptions::default()
             .with_occlusion(self.occlusion.is_next())
             .with_occluder_size_threshold(self.occluder_size)
