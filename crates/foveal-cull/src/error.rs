@@ -67,6 +67,8 @@ pub enum CullError {
     UnknownOccluder,
     /// The set has no occludee with this id, for instance since it was removed.
     UnknownOccludee,
+    /// The smallest corner of a box to be baked is larger than its largest one in some axis.
+    InsideOut,
     /// A mesh was not baked to be given new positions
     /// ([`BakeOptions::deformable`](crate::BakeOptions::deformable)).
     NotDeformable,
@@ -207,6 +209,7 @@ impl fmt::Display for CullError {
             }
             Self::UnknownOccluder => f.write_str("the set has no occluder with this id"),
             Self::UnknownOccludee => f.write_str("the set has no occludee with this id"),
+            Self::InsideOut => f.write_str("a box has a min above its max"),
             Self::NotDeformable => f.write_str("the mesh was not baked to be deformed"),
             Self::NotAffine => f.write_str("the last row of a transform must be 0, 0, 0, 1"),
             Self::TooManyTriangles { triangles, most } => {

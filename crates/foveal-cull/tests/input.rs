@@ -222,6 +222,24 @@ fn a_camera_inside_an_occluder_or_a_box_sees_what_a_renderer_shows() {
     assert_eq!(results, [Visibility::Visible; 2]);
 }
 
+/// Its faces looked inwards, and hid everything around a camera that was in it.
+#[test]
+fn an_occluder_box_that_is_inside_out_is_refused() {
+    for axes in 0..8 {
+        let side = |k: usize| [-1.0f32, 1.0][axes >> k & 1];
+        let min = Vec3::new(side(0), side(1), side(2));
+        let baked = OccluderMesh::from_box(Aabb::new(min, -min));
+        assert_eq!(baked.is_ok(), axes == 0, "{axes}");
+        if let Ok(mesh) = baked {
+            assert_eq!(mesh.triangle_count(), 12);
+        } else {
+            assert_eq!(baked.err(), Some(CullError::InsideOut));
+        }
+    }
+    let flat = Aabb::new([-1.0, 2.0, -1.0], [1.0, 2.0, 1.0]);
+    assert!(OccluderMesh::from_box(flat).is_ok());
+}
+
 #[test]
 fn a_box_that_crosses_the_near_plane_beside_the_picture_can_be_occluded() {
     let mut set = OccluderSet::new();

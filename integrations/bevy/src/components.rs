@@ -65,7 +65,8 @@ impl Occluder {
         }
     }
 
-    /// Occludes with a box in the entity's space, which must lie wholly inside what is drawn.
+    /// Occludes with a box in the entity's space, which must lie wholly inside what is drawn. A `min`
+    /// above `max` in some axis hides nothing, with a warning.
     #[must_use]
     pub fn from_box(min: Vec3, max: Vec3) -> Self {
         Self {

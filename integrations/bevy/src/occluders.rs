@@ -323,9 +323,16 @@ pub(crate) fn update(
         if entry.id.is_none() && drawn {
             let baked = match shape {
                 Shape::Nothing => None,
-                Shape::Box(min, max) => OccluderMesh::from_box(Aabb::new(min, max))
-                    .ok()
-                    .map(Arc::new),
+                Shape::Box(min, max) => match OccluderMesh::from_box(Aabb::new(min, max)) {
+                    Ok(mesh) => Some(Arc::new(mesh)),
+                    Err(error) => {
+                        static SAID: Once = Once::new();
+                        SAID.call_once(|| {
+                            warn!("{entity} and perhaps others do not occlude: {error}");
+                        });
+                        None
+                    }
+                },
                 Shape::Mesh(id, sides) => meshes.get(id).and_then(|mesh| {
                     let refused = &mut occluders.refused;
                     occluders

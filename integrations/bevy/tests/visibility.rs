@@ -131,6 +131,19 @@ fn boxes_without_a_mesh_follow_the_visibility_of_their_parents() {
 }
 
 #[test]
+fn boxes_that_are_inside_out_hide_nothing() {
+    let mut t = TestWorld::new();
+    let ball = t.ball(-9.0);
+    // Around the camera: the faces of such a box would look at it.
+    let corner = Vec3::splat(2.0);
+    t.app
+        .world_mut()
+        .spawn((Transform::default(), Occluder::from_box(corner, -corner)));
+    t.update();
+    assert!(t.sees(ball));
+}
+
+#[test]
 fn changed_meshes_occlude_as_they_are_now() {
     let mut t = TestWorld::new();
     let wall = t.wall(Occluder::default());

@@ -24,10 +24,14 @@ impl OccluderMesh {
     /// are in mesh space (metres), with `min <= max`.
     ///
     /// # Errors
-    /// [`CullError::NotFinite`] for NaN or infinity.
+    /// [`CullError::NotFinite`] for NaN or infinity, [`CullError::InsideOut`] where `min` is above
+    /// `max` in some axis: the faces would look inwards, and hide all around a camera in the box.
     pub fn from_box(bounds: Aabb) -> Result<Self, CullError> {
         if !(Vec3::from(bounds.min).is_finite() && Vec3::from(bounds.max).is_finite()) {
             return Err(CullError::NotFinite(Quantity::Position));
+        }
+        if !bounds.is_valid() {
+            return Err(CullError::InsideOut);
         }
         Ok(Self::of_boxes(&[bounds], None, BakeOptions::default()))
     }
