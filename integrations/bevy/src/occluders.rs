@@ -245,9 +245,11 @@ pub(crate) fn update(
             OccluderShape::Box { min, max } => Shape::Box(*min, *max),
         };
         // Bevy does not turn faces around where a scale mirrors: a material must draw the other side.
+        // Without a mesh there is no material to ask.
         let mirrored = transform.affine().matrix3.determinant() < 0.0;
-        let outside_drawn =
-            sides == Sides::Both || mirrored == verdict.contains(Verdict::FRONT_CULLED);
+        let outside_drawn = mesh.is_none()
+            || sides == Sides::Both
+            || mirrored == verdict.contains(Verdict::FRONT_CULLED);
         // A mesh with `NoCpuCulling` is in no view's list: whether a view draws it is not known.
         let drawn = visibility.get()
             && outside_drawn

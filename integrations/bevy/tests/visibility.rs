@@ -125,6 +125,10 @@ fn boxes_without_a_mesh_follow_the_visibility_of_their_parents() {
     *t.get_mut::<Visibility>(parent) = Visibility::Inherited;
     t.update();
     assert!(!t.sees(ball));
+    // A box is the same box where a scale mirrors it.
+    t.get_mut::<Transform>(parent).scale.x = -1.0;
+    t.update();
+    assert!(!t.sees(ball));
     *t.get_mut::<Visibility>(child) = Visibility::Hidden;
     t.update();
     assert!(t.sees(ball));
