@@ -110,6 +110,8 @@ mod left_out;
 #[cfg(feature = "bevy_light")]
 mod lights;
 #[cfg(feature = "bevy_light")]
+mod map_sizes;
+#[cfg(feature = "bevy_light")]
 mod mask;
 mod materials;
 mod occluders;

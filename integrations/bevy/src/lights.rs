@@ -7,6 +7,7 @@
 use crate::components::CpuOcclusionCulling;
 use crate::cull::{Boxes, Outcome, ViewCuller};
 use crate::left_out::LightsAlone;
+use crate::map_sizes::MapSizes;
 use crate::mask::{Mask, Projector};
 use crate::occluders::{Occluders, Range};
 use crate::reach::{Reach, SeenByLight, is_soft};
@@ -26,8 +27,8 @@ use bevy_ecs::query::{Has, With, Without};
 use bevy_ecs::system::{Local, Query};
 use bevy_light::cascade::Cascades;
 use bevy_light::{
-    DirectionalLight, DirectionalLightShadowMap, NotShadowCaster, PointLight, PointLightShadowMap,
-    SpotLight, VolumetricLight, spot_light_clip_from_view, spot_light_world_from_view,
+    DirectionalLight, NotShadowCaster, PointLight, SpotLight, VolumetricLight,
+    spot_light_clip_from_view, spot_light_world_from_view,
 };
 use bevy_math::{Affine3A, DMat4, DVec3, Mat4};
 use bevy_platform::collections::HashMap;
@@ -236,10 +237,7 @@ pub(crate) fn cull(
     pipelines: Res<Pipelines>,
     not_casters: Query<(), With<NotShadowCaster>>,
     alone: LightsAlone,
-    map_sizes: (
-        Option<Res<PointLightShadowMap>>,
-        Option<Res<DirectionalLightShadowMap>>,
-    ),
+    map_sizes: MapSizes,
     // Of lights with `NoCpuCulling` Bevy fills no lists, and does not show them again once they are
     // hidden. It fills those of the sun.
     mut point_lights: Query<
@@ -285,8 +283,8 @@ pub(crate) fn cull(
     let begin = Instant::now();
     cullers.begin_frame();
     listed.begin_frame();
-    let point_side = map_sizes.0.map(|map| map.size);
-    let other_side = map_sizes.1.map(|map| map.size);
+    let (point_side, others) = (map_sizes.point_side(), map_sizes.others());
+    let other_side = others.map(|map| map.side);
     let mut frame = Frame {
         occluders: &mut occluders,
         stats: &mut stats,
@@ -368,6 +366,7 @@ pub(crate) fn cull(
             continue;
         }
         let mut faces: Vec<Face> = Vec::new();
+        let coarser = others.map_or(1.0, |map| map.coarser);
         let mut texel = 0.0_f32;
         for (camera, lists) in &mut casters.entities {
             let of_camera = cascades.cascades.get(camera).into_iter().flatten();
@@ -385,7 +384,7 @@ pub(crate) fn cull(
             layers,
             side: other_side,
             reach: (!volumetric && !is_soft(light))
-                .then(|| Reach::of_directional_light(light, texel)),
+                .then(|| Reach::of_directional_light(light, texel, coarser)),
         };
         // The sun itself is left alone: it lights what no cascade reaches.
         frame.cull(&light, &mut faces);

@@ -71,15 +71,14 @@ impl Reach {
         }
     }
 
-    /// `texel`: the side of the largest texel of its cascades, metres.
-    pub(crate) fn of_directional_light(light: &DirectionalLight, texel: f32) -> Self {
+    /// `texel`: the side of the largest texel of its cascades, metres; `coarser`: how many times as wide
+    /// texels are drawn.
+    pub(crate) fn of_directional_light(light: &DirectionalLight, texel: f32, coarser: f32) -> Self {
         let bias = light.shadow_normal_bias.abs() * SQRT_2;
+        let filter = coarser * (texel * (bias + FLAT_TEXELS) + FLAT_M);
         Self {
             sphere: None,
-            beside: [
-                light.shadow_depth_bias.abs() + texel * (bias + FLAT_TEXELS) + FLAT_M,
-                0.0,
-            ],
+            beside: [light.shadow_depth_bias.abs() + filter, 0.0],
         }
     }
 
