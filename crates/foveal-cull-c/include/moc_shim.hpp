@@ -184,11 +184,14 @@ public:
             for (int k = 0; k < 3; ++k) {
                 float point[3];
                 read(vertices, triangles[3 * t + k], layout, point);
+                const double x = static_cast<double>(point[0]);
+                const double y = static_cast<double>(point[1]);
+                const double z = static_cast<double>(point[2]);
                 for (int axis = 0; axis < 3; ++axis) {
-                    corner[k][axis] = place[axis] * point[0] + place[3 + axis] * point[1] +
-                                      place[6 + axis] * point[2] + place[9 + axis];
+                    corner[k][axis] = place[axis] * x + place[3 + axis] * y + place[6 + axis] * z +
+                                      place[9 + axis];
                     // NaN, or beyond what a box can hold.
-                    if (!(std::fabs(corner[k][axis]) <= FLT_MAX)) {
+                    if (!(std::fabs(corner[k][axis]) <= static_cast<double>(FLT_MAX))) {
                         return VISIBLE;
                     }
                 }

@@ -358,3 +358,14 @@ fn a_frame_that_panics_hides_nothing_in_the_next() {
         .unwrap();
     assert_eq!(asked(&mut culler), Visibility::Visible);
 }
+
+#[test]
+fn numbers_of_threads_without_an_end_have_one() {
+    let pool = WorkerThreads::new(usize::MAX);
+    assert!((2..=256).contains(&pool.count()), "{}", pool.count());
+    let ran = AtomicUsize::new(0);
+    pool.run(1000, &|_| {
+        ran.fetch_add(1, Ordering::Relaxed);
+    });
+    assert_eq!(ran.into_inner(), 1000);
+}

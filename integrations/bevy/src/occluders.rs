@@ -311,7 +311,6 @@ pub(crate) fn update(
         let changed_mesh = matches!(shape, Shape::Mesh(mesh, _) if changed.contains(&mesh));
         let place = affine(&transform.affine());
         let moved = transform.is_changed();
-        let was_placed = entry.id.is_some();
         if let Some(id) = entry.id {
             let anew = entry.shape != shape || changed_mesh;
             if anew || (moved && occluders.set.set_transform(id, place).is_err()) {
@@ -319,6 +318,7 @@ pub(crate) fn update(
                 entry.id = None;
             }
         }
+        let was_placed = entry.id.is_some();
         reshaped |= entry.shape != shape;
         entry.shape = shape;
         // What is not drawn is not baked. What could not be placed is tried again.
@@ -369,7 +369,7 @@ pub(crate) fn update(
                 }
                 _ => Aabb::EMPTY,
             };
-        } else if let Some(id) = entry.id.filter(|_| moved || !was_placed || changed_mesh)
+        } else if let Some(id) = entry.id.filter(|_| moved || !was_placed)
             && let Ok(mesh) = occluders.set.mesh(id)
         {
             entry.bounds = placed(mesh.bounds(), &transform);

@@ -45,6 +45,7 @@ pub fn compiler(language: Language) -> Command {
         standard,
         "-Wall",
         "-Wextra",
+        "-Wdouble-promotion",
         "-Wpedantic",
         "-Werror",
         "-O1",

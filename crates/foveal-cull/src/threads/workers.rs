@@ -195,14 +195,17 @@ impl Drop for Posted<'_> {
     }
 }
 
+/// More threads than any frame has work for.
+const MOST_THREADS: usize = 256;
+
 impl WorkerThreads {
-    /// Starts `threads - 1` threads; the caller's is the last one. Threads that the system refuses
-    /// are left out.
+    /// Starts `threads - 1` threads, 255 at most; the caller's is the last one. Threads that the system
+    /// refuses are left out.
     #[must_use]
     pub fn new(threads: usize) -> Self {
         let shared = Arc::new(Shared::default());
-        let helpers = (1..threads)
-            .filter_map(|_| {
+        let helpers = (1..threads.min(MOST_THREADS))
+            .map_while(|_| {
                 let shared = Arc::clone(&shared);
                 sync::Builder::new()
                     .name("foveal-cull".into())
