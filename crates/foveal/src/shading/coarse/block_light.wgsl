@@ -3,7 +3,6 @@
 #import shading/coarse/block.wgsl
 #import shading/coarse/light.wgsl
 #import shading/input.wgsl
-#import shading/shading.wgsl
 #import shared/blocks.wgsl
 #import shared/frame.wgsl
 #import shared/lighting.wgsl
