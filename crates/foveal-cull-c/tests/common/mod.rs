@@ -45,7 +45,6 @@ pub fn compiler(language: Language) -> Command {
         standard,
         "-Wall",
         "-Wextra",
-        "-Wdouble-promotion",
         "-Wpedantic",
         "-Werror",
         "-O1",
