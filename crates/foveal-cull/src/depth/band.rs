@@ -33,7 +33,7 @@ pub(crate) struct BlockMut<'a, 'b> {
 
 impl<'a> Band<'a> {
     /// Block number `i` of the band.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn block_mut(&mut self, i: usize) -> BlockMut<'_, 'a> {
         BlockMut {
             depth: &mut self.depth[i],
@@ -45,7 +45,7 @@ impl<'a> Band<'a> {
 
     /// Whether a surface at this depth or farther changes none of the blocks (first and last,
     /// inclusive).
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn hides(&self, [x0, y0, x1, y1]: [u32; 4], code: i16) -> bool {
         for y in y0..=y1 {
             let row = (y - self.first_row) * self.blocks_x;
@@ -66,7 +66,7 @@ impl<'a> Band<'a> {
     }
 
     /// Prefetches the blocks (first and last, inclusive) that a surface of this depth may change.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn prefetch<L: Lanes>(&self, l: L, [x0, y0, x1, y1]: [u32; 4], code: i16) {
         for y in y0..=y1 {
             let row = (y - self.first_row) * self.blocks_x;
@@ -80,7 +80,7 @@ impl<'a> Band<'a> {
 
     /// The pixels of block `i` that a surface between depths `far` and `near` must not cover, since
     /// they lie in a silhouette margin.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn margin(&self, i: usize, far: i16, near: i16) -> u64 {
         if !self.has_margins {
             return 0;

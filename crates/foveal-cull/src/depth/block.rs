@@ -55,17 +55,17 @@ impl BlockState {
     pub(crate) const EMPTY: Self = Self(KIND_EMPTY);
     pub(crate) const DEPTH: Self = Self(KIND_DEPTH);
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn partial(state: u32, slot: u32) -> Self {
         Self(slot << 2 | state)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn kind(self) -> u32 {
         self.0 & 3
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn slot(self) -> u32 {
         self.0 >> 2
     }

@@ -142,7 +142,7 @@ impl OcclusionBuffer {
     }
 
     /// Depth code of one pixel.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn code_of_pixel(&self, x: u32, y: u32) -> i16 {
         let block = y / BLOCK * self.blocks_x + x / BLOCK;
         if self.states[block as usize].kind() == KIND_EMPTY {
@@ -153,7 +153,7 @@ impl OcclusionBuffer {
 
     /// Depth code by index: block by block, row by row in a block. Only valid once a frame is
     /// complete.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn code_at(&self, at: usize) -> i16 {
         let size = BLOCK_PIXELS as usize;
         self.depth[at / size].0[at % size]

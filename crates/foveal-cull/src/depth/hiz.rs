@@ -20,7 +20,7 @@ impl<'a> Hiz<'a> {
     /// One bit per depth code that is farther than everything in its rectangle of pixels (left,
     /// top, right, bottom, inclusive). Conservative: the look-up may cover a somewhat larger
     /// rectangle.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn occluded<L: Lanes>(self, l: L, pixels: [I8<L>; 4], codes: &[i32; 8]) -> u32 {
         let block = l.int(BLOCK.trailing_zeros() as i32);
         let buffer = self.buffer;
@@ -34,7 +34,7 @@ impl<'a> Hiz<'a> {
         bits
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn table(self) -> &'a [i16] {
         &self.buffer.hiz
     }
@@ -42,7 +42,7 @@ impl<'a> Hiz<'a> {
 
 /// The farthest depth code at an index of the table. Scalar on purpose: gathers take several times
 /// as long.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn farthest_code(table: &[i16], at: i32) -> i32 {
     i32::from(table.get(at as usize).copied().unwrap_or(EMPTY))
 }

@@ -10,7 +10,7 @@ pub(crate) struct BuildHiz<'a>(pub(crate) &'a mut OcclusionBuffer);
 impl Kernel for BuildHiz<'_> {
     type Output = ();
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn run<L: Lanes>(self, _: L) {
         let buffer = self.0;
         buffer.empty_stale();
@@ -62,7 +62,7 @@ impl Kernel for BuildHiz<'_> {
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn farther(out: &mut [i16], a: &[i16], b: &[i16]) {
     for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
         *out = *a.min(b);

@@ -52,7 +52,7 @@ impl<'a> Slots<'a> {
     }
 
     /// The next free slot.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn next(&mut self) -> u32 {
         if self.taken == self.given {
             self.begin();
@@ -61,13 +61,13 @@ impl<'a> Slots<'a> {
     }
 
     /// Takes the next free slot, if `wanted`.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn take(&mut self, wanted: bool) {
         self.taken = self.taken.wrapping_add(u32::from(wanted));
     }
 
     /// Gives a taken slot back, if `unwanted`.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn give(&mut self, slot: u32, unwanted: bool) {
         // The slot is taken, so the ring buffer has room for it.
         let place = self.place(self.given);
@@ -75,7 +75,7 @@ impl<'a> Slots<'a> {
         self.given = self.given.wrapping_add(u32::from(unwanted));
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn place(&self, n: u32) -> usize {
         (n & self.around) as usize
     }

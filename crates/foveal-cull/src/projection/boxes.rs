@@ -24,7 +24,7 @@ impl Boxes8 {
 
     /// Centres and half extents of eight boxes, grown for rounding; NaN for boxes that are not
     /// volumes.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn of<L: Lanes>(l: L, boxes: &[Aabb; 8]) -> Self {
         let v = l.transpose(boxes);
         let half = l.splat(0.5);
@@ -47,7 +47,7 @@ impl Boxes8 {
     }
 
     /// Copies box `from` of `boxes` to box `lane`.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn copy(&mut self, lane: usize, boxes: &Self, from: usize) {
         for axis in 0..3 {
             self.center[axis][lane] = boxes.center[axis][from];

@@ -58,7 +58,7 @@ mod tests {
     impl Kernel for Project<'_> {
         type Output = Corners8;
 
-        #[inline(always)]
+        #[cfg_attr(not(unoptimized), inline(always))]
         fn run<L: Lanes>(self, l: L) -> Corners8 {
             let mut corners = Corners8::NONE;
             outline(l, self.0, self.1, Some(&mut corners));

@@ -49,7 +49,7 @@ impl Projected8 {
 }
 
 /// Projects eight boxes, with their centres.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn project<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> Projected8 {
     let mut p = outline(l, s, boxes, None);
     if s.hiz.is_some() {
@@ -60,7 +60,7 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> Project
 
 /// Projects eight boxes without their centres; with their corners if asked for, where the screen
 /// has a HiZ.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn outline<L: Lanes>(
     l: L,
     s: &Screen<'_>,
@@ -154,7 +154,7 @@ pub(crate) fn outline<L: Lanes>(
 
 /// Pixel of each box's centre (right, down) and its depth code; a very low code if it is not on the
 /// screen.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn centers<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> [[i32; 8]; 3] {
     let c = [
         l.load(&boxes.center[0]),
@@ -178,31 +178,31 @@ fn centers<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> [[i32; 8]; 3] {
     center
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn dot<L: Lanes>(c: &[F8<L>; 3], r: &[f32; 4]) -> F8<L> {
     c[0] * r[0] + c[1] * r[1] + (c[2] * r[2] + r[3])
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn edges<L: Lanes>(h: &[F8<L>; 3], r: &[f32; 4]) -> [F8<L>; 3] {
     [h[0] * r[0], h[1] * r[1], h[2] * r[2]]
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn reach<L: Lanes>(e: &[F8<L>; 3]) -> F8<L> {
     e[0].abs() + e[1].abs() + e[2].abs()
 }
 
 /// A clip row at the four corners of the box's central section, and its change to the upper
 /// corners.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn corners<L: Lanes>(c: &[F8<L>; 3], h: &[F8<L>; 3], r: &[f32; 4]) -> ([F8<L>; 4], F8<L>) {
     let (m, e) = (dot(c, r), edges(h, r));
     let (a, b) = (e[0] + e[1], e[0] - e[1]);
     ([m + a, m + b, m - b, m - a], e[2])
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn extent<L: Lanes>(a: [F8<L>; 4], b: [F8<L>; 4]) -> (F8<L>, F8<L>) {
     let lo = a[0]
         .min(a[1])

@@ -25,7 +25,7 @@ pub(crate) struct Screen<'a> {
 impl Screen<'_> {
     /// Whether a box, grown for rounding, lies wholly beyond one edge of the screen. Right for
     /// boxes that cross the near plane too.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn is_beside(&self, center: Vec3, half: Vec3) -> bool {
         let [x, y, _, w] = self.rows;
         // Sums over the axes for the left, right, upper and lower edge, by rows that are above zero

@@ -84,7 +84,7 @@ impl AxisPlanes {
 
     /// Depth code at which the ray through (x, y) enters a box; the lowest code where it misses.
     /// Rounded neither up nor down: enough to call a box visible, which is always safe.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn entry(&self, x: f32, y: f32, center: Vec3, half: Vec3) -> i16 {
         let center = center + self.from_eye;
         // Distances along the ray in units that grow with distance: from the last front plane to

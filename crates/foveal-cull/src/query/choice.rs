@@ -33,7 +33,7 @@ const OBJECTS_PER_NODE: usize = 256;
 impl Kernel for OpenObjects<'_> {
     type Output = Option<usize>;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn run<L: Lanes>(self, l: L) -> Option<usize> {
         let (coarse, w) = (self.query.coarse_test()?, l.wide());
         let nodes = self.tree.nodes();

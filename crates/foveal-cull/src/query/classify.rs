@@ -97,7 +97,7 @@ impl<'a> Query<'a> {
 
     /// Classifies one of eight projected boxes. `object`: not a group, so that it may be too small,
     /// and its faces decide if its rectangle does not.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn classify<L: Lanes>(
         &self,
         l: L,
@@ -147,7 +147,7 @@ impl<'a> Query<'a> {
     }
 
     /// The coarse test, for frames in which frustum and HiZ alone decide most boxes.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn coarse_test(&self) -> Option<CoarseTest<'a>> {
         (self.occlusion && self.region.is_none())
             .then(|| CoarseTest::new(&self.screen))
@@ -156,7 +156,7 @@ impl<'a> Query<'a> {
 
     /// Classifies a box that neither its centre nor its corners decided, in frames of one exact
     /// eye.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn classify_remaining<L: Lanes>(
         &self,
         l: L,
@@ -172,7 +172,7 @@ impl<'a> Query<'a> {
     }
 
     /// Classifies a group: visible means that it must be opened.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn classify_group<L: Lanes>(
         &self,
         l: L,
@@ -197,7 +197,7 @@ impl<'a> Query<'a> {
         self.classify_rect(l, rect, code, None)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn is_small(&self, i: usize, boxes: &Boxes8, object: bool) -> bool {
         if !(object && self.small > 0.0) {
             return false;
@@ -209,7 +209,7 @@ impl<'a> Query<'a> {
         distance > 1.0 && h.length_squared() < distance * self.small
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn classify_rect<L: Lanes>(
         &self,
         l: L,
@@ -229,7 +229,7 @@ impl<'a> Query<'a> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn classify_crossing<L: Lanes>(&self, l: L, i: usize, boxes: &Boxes8) -> Visibility {
         let (center, half) = place(boxes, i);
         if self.screen.is_beside(center, half + self.screen.grow) {
@@ -244,14 +244,14 @@ impl<'a> Query<'a> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn pixels(&self, samples: [f32; 4]) -> PixelRect {
         PixelRect::from_samples(samples, self.buffer.width, self.buffer.height)
     }
 
     /// Classifies a box for a view region. Frusta are tested one by one, and what the centre eye's
     /// buffer cannot decide for all eyes is visible.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn classify_region<L: Lanes>(
         &self,
         l: L,
@@ -292,13 +292,13 @@ impl<'a> Query<'a> {
 
 impl Query<'_> {
     /// Whether a depth code is in front of a pixel.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn is_in_front(&self, at: i32, code: i32) -> bool {
         code > i32::from(self.buffer.code_at(at as usize))
     }
 
     /// Whether any corner of a box that lies wholly beyond the near plane is in front of its pixel.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn corner_seen(&self, corners: &Corners8, i: usize) -> bool {
         let mut seen = false;
         for (at, code) in corners.at.iter().zip(&corners.code) {
@@ -317,7 +317,7 @@ struct Region {
 }
 
 /// Rectangle of one of eight boxes, and its depth code.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn rectangle(p: &Projected8, i: usize) -> (PixelRect, i16) {
     let [x0, y0, x1, y1] = p.pixels.map(|v| v[i] as u32);
     let code = p.code[i].clamp(-32768, 32767) as i16;
@@ -325,7 +325,7 @@ fn rectangle(p: &Projected8, i: usize) -> (PixelRect, i16) {
 }
 
 /// Centre and half extent of one of eight boxes.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn place(boxes: &Boxes8, i: usize) -> (Vec3, Vec3) {
     let [cx, cy, cz] = boxes.center;
     let [hx, hy, hz] = boxes.half;

@@ -88,7 +88,7 @@ impl Coarse16 {
     };
 
     /// Replaces the indices by the depth codes there.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn fetch(&mut self, hiz: Hiz<'_>) {
         let table = hiz.table();
         for at in &mut self.at {
@@ -97,7 +97,7 @@ impl Coarse16 {
     }
 
     /// Bit per box: certainly occluded. Call `fetch` before.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn hidden<W: Sixteen>(&self, w: W) -> u32 {
         let farther = w.load_ints(&self.code).lt(w.load_ints(&self.at));
         farther.bits() & self.beyond
@@ -126,7 +126,7 @@ impl<'a> CoarseTest<'a> {
         })
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn classify<W: Sixteen>(&self, w: W, boxes: &[Aabb; 16]) -> (Coarse16, Centers16) {
         let v = w.transpose(boxes);
         // Centres and half extents, grown as for exact rectangles.
@@ -149,7 +149,7 @@ impl<'a> CoarseTest<'a> {
     }
 
     /// Pixels of the centres, from their clip rows.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn centers<W: Sixteen>(&self, w: W, [x, y, z, distance]: [F16<W>; 4]) -> Centers16 {
         let (zero, one) = (w.splat(0.0), w.splat(1.0));
         let per = one / distance;
@@ -170,7 +170,7 @@ impl<'a> CoarseTest<'a> {
 
     /// Classifies boxes by centres and half extents, with a bit for each that is valid; also
     /// returns the centres' clip rows.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn classify_extents<W: Sixteen>(
         &self,
         w: W,
@@ -215,7 +215,7 @@ impl<'a> CoarseTest<'a> {
     }
 
     /// Classifies the children of two nodes, whose boxes are grown already.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn classify_nodes<W: Sixteen>(
         &self,
         w: W,
@@ -247,18 +247,18 @@ impl<'a> CoarseTest<'a> {
 
 impl CoarseTest<'_> {
     /// Index in the HiZ for rectangles of blocks (left, top, right, bottom, inclusive).
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn place<W: Sixteen>(&self, w: W, blocks: [I16<W>; 4]) -> I16<W> {
         hiz_index!(w, self.hiz.buffer, blocks)
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn dot<W: Sixteen>(c: &[F16<W>; 3], r: &[f32; 4]) -> F16<W> {
     c[0] * r[0] + c[1] * r[1] + (c[2] * r[2] + r[3])
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn reach<W: Sixteen>(h: &[F16<W>; 3], r: &[f32; 4]) -> F16<W> {
     h[0] * r[0].abs() + h[1] * r[1].abs() + h[2] * r[2].abs()
 }

@@ -36,19 +36,19 @@ impl Compacted {
         count: 0,
     };
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn indices(&self) -> &[u8] {
         &self.indices[..self.count]
     }
 
     /// Entry `n`. Entries past the end keep their value until they are overwritten.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn index(&self, n: usize) -> u8 {
         self.indices[n]
     }
 
     /// Appends the members of group `g` (eight boxes) whose bit in `wanted` is set.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn push_eight(&mut self, g: usize, wanted: usize) {
         let indices = BITS[wanted] + g as u64 * 0x0808_0808_0808_0808;
         if let Some(to) = self.indices[self.count..].first_chunk_mut() {
@@ -58,7 +58,7 @@ impl Compacted {
     }
 
     /// Drops the entries from box `end` on, which are the last ones.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn truncate_at(&mut self, end: usize) {
         while self.count > 0 && usize::from(self.indices[self.count - 1]) >= end {
             self.count -= 1;
@@ -66,7 +66,7 @@ impl Compacted {
     }
 
     /// Appends box `n` if `wanted`, without a branch.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn push_if(&mut self, n: usize, wanted: bool) {
         self.indices[self.count] = n as u8;
         self.count += usize::from(wanted);

@@ -35,7 +35,7 @@ pub(crate) struct Faces<W: Sixteen> {
 impl<W: Sixteen> Faces<W> {
     /// `None` if the eye may be inside the box. `center` and `half` are relative to the boxes'
     /// origin, grown for rounding.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn new(w: W, planes: &AxisPlanes, center: Vec3, half: Vec3) -> Option<Self> {
         let center = center + planes.from_eye;
         let ends = [center - half, center + half];
@@ -89,14 +89,14 @@ impl<W: Sixteen> Faces<W> {
     }
 
     /// Whether the box is invisible in a block with farthest depth `min`, whatever its pixels are.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn miss(&self, w: W, bx: u32, by: u32, min: i16) -> bool {
         let [most, _] = self.over_block(bx, by);
         self.misses(w, most, min)
     }
 
     /// The same from the largest values in the block.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn misses(&self, w: W, most: F16<W>, min: i16) -> bool {
         // In a block with empty pixels no depth is too far.
         let nearer = if min == EMPTY {
@@ -109,7 +109,7 @@ impl<W: Sixteen> Faces<W> {
     }
 
     /// Largest and smallest values in a block.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn over_block(&self, bx: u32, by: u32) -> [F16<W>; 2] {
         let center = |v: u32| (v * BLOCK_SAMPLES) as f32 + BLOCK_SAMPLES as f32 * 0.5;
         let value = self.at(center(bx), center(by));
@@ -118,7 +118,7 @@ impl<W: Sixteen> Faces<W> {
     }
 
     /// Whether the box may be visible in any of the pixels `seen` of a block.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn seen<L: Lanes<W = W>>(
         &self,
         l: L,
@@ -169,7 +169,7 @@ impl<W: Sixteen> Faces<W> {
     }
 
     /// The values at a point, rounded.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn at(&self, x: f32, y: f32) -> F16<W> {
         let slopes = self.x * x + self.y * y;
         slopes + self.at_zero
@@ -177,7 +177,7 @@ impl<W: Sixteen> Faces<W> {
 }
 
 /// The coordinate along each lane's axis.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn by_axis<W: Sixteen>(w: W, v: Vec3, of: &[[f32; 16]; 3]) -> F16<W> {
     let [x, y, z] = three!(k => w.splat(v[k]) * w.load(&of[k]));
     x + y + z
@@ -185,7 +185,7 @@ fn by_axis<W: Sixteen>(w: W, v: Vec3, of: &[[f32; 16]; 3]) -> F16<W> {
 
 /// Depth codes of the pixels of a block, from the largest value in the first one and its change
 /// from pixel to pixel, times `scale`.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn block_codes<L: Lanes>(l: L, first: f32, right: f32, down: f32, scale: f32) -> Depths<L> {
     const COLUMNS: [f32; BLOCK as usize] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
     let columns = l.splat(first * scale) + l.load(&COLUMNS) * (right * scale);
@@ -207,7 +207,7 @@ mod tests {
     impl Kernel for Seen<'_> {
         type Output = Option<bool>;
 
-        #[inline(always)]
+        #[cfg_attr(not(unoptimized), inline(always))]
         fn run<L: Lanes>(self, l: L) -> Option<bool> {
             let Self(planes, (center, half), [x, y], code) = self;
             let faces = Faces::new(l.wide(), planes, center, half)?;

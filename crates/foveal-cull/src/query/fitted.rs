@@ -119,7 +119,7 @@ impl FittedTree {
     }
 
     /// Fits one node, and writes the box of its group to the node above, which it returns.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn fit<L: Lanes>(&mut self, l: L, n: u32, with_groups: bool) -> u32 {
         let boxes = &self.boxes[n as usize];
         let (eight, group) = (Boxes8::of(l, boxes), around(l, boxes));
@@ -144,7 +144,7 @@ struct Refit<'a>(&'a mut FittedTree);
 impl Kernel for Refit<'_> {
     type Output = ();
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn run<L: Lanes>(self, l: L) {
         let fitted = self.0;
         for word in (0..fitted.marked.len()).rev() {

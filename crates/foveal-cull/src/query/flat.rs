@@ -70,7 +70,7 @@ impl Work {
 impl Kernel for Flat<'_> {
     type Output = ();
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn run<L: Lanes>(self, l: L) {
         let query = self.query;
         let coarse = query.coarse_test().filter(|_| query.small <= 0.0);
@@ -92,7 +92,7 @@ impl Kernel for Flat<'_> {
 
 impl Query<'_> {
     /// Classifies the first `count` boxes.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn classify_all<L: Lanes>(
         &self,
         l: L,
@@ -158,7 +158,7 @@ impl Query<'_> {
 
     /// Keeps the undecided boxes of which no corner is in front of the buffer. Most visible boxes
     /// that get here are visible at a corner.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn keep_uncertain_corners(
         &self,
         undecided: &mut Compacted,
@@ -177,7 +177,7 @@ impl Query<'_> {
 
     /// Marks the remaining boxes visible whose centre is in front of the buffer, and keeps the
     /// others. Most visible boxes are visible at their centre.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn keep_uncertain_centers(&self, work: &mut Work) {
         work.undecided.count = 0;
         for &n in work.remaining.indices() {
@@ -192,7 +192,7 @@ impl Query<'_> {
 }
 
 /// Gathers the listed boxes into groups of eight; returns how many groups.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn copy<L: Lanes>(
     l: L,
     boxes: &[Aabb; BOXES],
@@ -212,7 +212,7 @@ fn copy<L: Lanes>(
 
 /// Classifies the first `count` boxes by the coarse test. Culled ones get their result; the others
 /// are listed.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn classify_coarse<L: Lanes>(
     l: L,
     test: &CoarseTest<'_>,

@@ -5,7 +5,7 @@ use crate::projection::boxes::Boxes8;
 use crate::simd::{F8, Lanes};
 
 /// The box around eight boxes, each a volume or [`Aabb::EMPTY`].
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn around<L: Lanes>(l: L, boxes: &[Aabb; 8]) -> Aabb {
     let first = row(l, &boxes[0]);
     let (mut low, mut high) = (first, first);
@@ -20,7 +20,7 @@ pub(super) fn around<L: Lanes>(l: L, boxes: &[Aabb; 8]) -> Aabb {
 }
 
 /// A box in a register: its first four numbers and its last four, which compilers load as they lie.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn row<L: Lanes>(l: L, Aabb { min, max }: &Aabb) -> F8<L> {
     l.load(&[
         min[0], min[1], min[2], max[0], min[2], max[0], max[1], max[2],
@@ -29,7 +29,7 @@ fn row<L: Lanes>(l: L, Aabb { min, max }: &Aabb) -> F8<L> {
 
 /// The sum of half the surfaces of the boxes whose bit is set. A box counts nothing whose surface is
 /// not a number or too large for one.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn half_areas<L: Lanes>(l: L, boxes: &Boxes8, lanes: u8) -> f64 {
     let [x, y, z] = [0, 1, 2].map(|k| l.load(&boxes.half[k]));
     let area = x * y + y * z + z * x;

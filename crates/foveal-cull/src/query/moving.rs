@@ -107,7 +107,7 @@ impl OccludeeSet {
     /// [`CullError::UnknownOccludee`].
     // Always: a box that the caller has in registers would be written in parts and read as a whole,
     // which a processor waits for.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub fn set_bounds(&mut self, id: OccludeeId, bounds: Aabb) -> Result<(), CullError> {
         let place = self.place(id)?;
         self.bounds[id.slot as usize] = bounds;

@@ -18,7 +18,7 @@ pub(crate) struct PixelRect {
 
 impl PixelRect {
     /// Every pixel that the rectangle (samples) touches, clamped to the screen.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn from_samples([x0, y0, x1, y1]: [f32; 4], width: u32, height: u32) -> Self {
         let scale = 1.0 / SAMPLES as f32;
         // Float casts saturate, and give 0 for what is left of the screen.
@@ -31,7 +31,7 @@ impl PixelRect {
     }
 
     /// First and last block, both inclusive.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn blocks(self) -> [u32; 4] {
         [
             self.x0 / BLOCK,
@@ -41,14 +41,14 @@ impl PixelRect {
         ]
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn block_count(self) -> u32 {
         let [x0, y0, x1, y1] = self.blocks();
         (x1 - x0 + 1) * (y1 - y0 + 1)
     }
 
     /// The part in one block, one bit per pixel.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn bits(self, bx: u32, by: u32) -> u64 {
         let x0 = self.x0.max(bx * BLOCK) - bx * BLOCK;
         let x1 = self.x1.min(bx * BLOCK + BLOCK - 1) - bx * BLOCK;
@@ -62,7 +62,7 @@ impl PixelRect {
 
 /// Whether everything at `code` or farther is occluded in the rectangle; and if not, whether the
 /// box in it is (by its centre and half extent).
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn hidden<L: Lanes>(
     l: L,
     buffer: &OcclusionBuffer,

@@ -69,20 +69,20 @@ impl Node {
     }
 
     /// The number of the node that a child is.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn child(&self, lane: usize) -> u32 {
         let before = (1u32 << lane) - 1;
         self.below + (u32::from(self.lanes & !self.objects) & before).count_ones()
     }
 
     /// Lanes with a child.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn children(&self) -> impl Iterator<Item = usize> + use<> {
         let lanes = self.lanes;
         (0..8).filter(move |lane| lanes >> lane & 1 != 0)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn is_object(&self, lane: usize) -> bool {
         self.objects >> lane & 1 != 0
     }
@@ -120,7 +120,7 @@ impl Node {
     }
 
     /// The run of the order that a child covers.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn run(&self, lane: usize) -> core::ops::Range<usize> {
         self.first[lane] as usize..self.first[lane + 1] as usize
     }
@@ -176,7 +176,7 @@ impl OccludeeTree {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn node_mut(&mut self, n: u32) -> &mut Node {
         &mut self.nodes[n as usize]
     }
@@ -186,13 +186,13 @@ impl OccludeeTree {
     }
 
     /// All nodes. The first one is the root.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
     /// Object numbers in the order of the runs.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn order(&self) -> &[u32] {
         &self.order
     }

@@ -63,7 +63,7 @@ impl Work {
     };
 
     /// Takes nodes from the stack; returns how many.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn take(&mut self) -> usize {
         let count = if self.top > FEW {
             1
@@ -76,7 +76,7 @@ impl Work {
     }
 
     /// Puts a node onto the stack if `wanted`, without a branch.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn push(&mut self, node: u32, wanted: bool) {
         self.stack[self.top] = node;
         self.top += usize::from(wanted);
@@ -86,7 +86,7 @@ impl Work {
 impl Kernel for Walk<'_> {
     type Output = ();
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn run<L: Lanes>(mut self, l: L) {
         if self.tree.nodes().is_empty() {
             return;
@@ -109,13 +109,13 @@ impl Kernel for Walk<'_> {
 }
 
 impl<'a> Walk<'a> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn node(&self, n: u32) -> &'a Node {
         &self.tree.nodes()[n as usize]
     }
 
     /// Gives all objects of a run the same result.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn assign(&mut self, node: &Node, lane: usize, result: Visibility) {
         for &object in &self.tree.order()[node.run(lane)] {
             self.results[object as usize] = result;
@@ -124,7 +124,7 @@ impl<'a> Walk<'a> {
 
     /// Classifies the children of `count` nodes by the coarse test. Those outside get their result,
     /// and those that are not occluded are listed.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn classify_children<L: Lanes>(
         &mut self,
         l: L,
@@ -169,7 +169,7 @@ impl<'a> Walk<'a> {
 
     /// Decides the remaining objects that are visible at their centre, or too small, and lists the
     /// others.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn test_object_centers(&mut self, work: &mut Work) {
         work.undecided.count = 0;
         for &k in work.objects.indices() {
@@ -196,7 +196,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Opens the groups that are visible at their centre, and lists the others.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn test_group_centers<L: Lanes>(&mut self, l: L, work: &mut Work) {
         work.undecided.count = 0;
         for n in 0..work.groups.count {
@@ -214,7 +214,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Classifies the listed children by exact rectangles; objects by their corners and faces too.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn exact<L: Lanes, const OBJECTS: bool>(&mut self, l: L, work: &mut Work) {
         for first in (0..work.undecided.count).step_by(8 * GROUPS) {
             let count = (work.undecided.count - first).min(8 * GROUPS);
@@ -223,7 +223,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Classifies a part of the list.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn exact_part<L: Lanes, const OBJECTS: bool>(
         &mut self,
         l: L,
@@ -296,7 +296,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Classifies node by node, without a coarse test.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn one_by_one<L: Lanes>(&mut self, l: L, work: &mut Work) {
         while work.top > 0 {
             work.top -= 1;

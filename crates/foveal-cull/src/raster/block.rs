@@ -51,7 +51,7 @@ const DEEP: i32 = 64;
 impl DepthPlane {
     /// Whether its blocks lie at depths so different that it is worth asking for each whether it
     /// is hidden.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn is_deep(&self) -> bool {
         i32::from(self.max_code) - i32::from(self.min_code) > DEEP
     }
@@ -64,7 +64,7 @@ pub(crate) struct EdgeRows<L: Lanes> {
 }
 
 impl<L: Lanes> EdgeRows<L> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn new(edges: &Edges<L>) -> Self {
         Self {
             edges: *edges,
@@ -74,7 +74,7 @@ impl<L: Lanes> EdgeRows<L> {
 
     /// Positions of the edges at the first sample row of a row of blocks that begins at `top`,
     /// samples.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn at(&self, l: L, top: f32) -> Doubles<L> {
         let e = &self.edges;
         let down = l.double(f64::from(top + 0.5)) - e.y;
@@ -82,7 +82,7 @@ impl<L: Lanes> EdgeRows<L> {
     }
 
     /// Spans of covered samples in a row of blocks, from the positions there.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn spans(&self, at: Doubles<L>, rows: Option<(f32, f32)>, top: f32) -> L::S {
         let first = f64::from(top + 0.5);
         let limits = rows.map(|(after, last)| [f64::from(after) - first, f64::from(last) - first]);
@@ -101,7 +101,7 @@ struct Slope {
 }
 
 impl Slope {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn new(plane: &DepthPlane, bx: u32, by: u32) -> Self {
         // Centre of the first pixel.
         let x = (bx * BLOCK_SAMPLES) as f32 + 2.0 - plane.x;
@@ -114,7 +114,7 @@ impl Slope {
     }
 
     /// Depth codes of all 64 pixels.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn codes<L: Lanes>(&self, l: L, plane: &DepthPlane) -> Depths<L> {
         const COLUMNS: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
         let columns = l.load(&COLUMNS) * self.across;
@@ -125,7 +125,7 @@ impl Slope {
     }
 
     /// The greatest of these codes, likewise.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn greatest_code(&self, plane: &DepthPlane) -> i16 {
         let last = (BLOCK - 1) as f32;
         let left = larger(self.first, self.first + last * self.across);
@@ -134,7 +134,7 @@ impl Slope {
     }
 
     /// The least of these codes. Sums round alike everywhere, so it is that of a corner.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn least_code(&self, plane: &DepthPlane) -> i16 {
         let last = (BLOCK - 1) as f32;
         let left = smaller(self.first, self.first + last * self.across);
@@ -149,7 +149,7 @@ pub(crate) const WORK_OF_FULL: u32 = 2;
 const WORK_OF_PARTIAL: u32 = 3;
 
 /// Merges a polygon that covers the whole block; returns the work.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn cover_full<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
@@ -192,7 +192,7 @@ pub(crate) fn cover_full<L: Lanes>(
 }
 
 /// Merges a polygon that covers a part of the block; returns the work.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn cover_partial<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
@@ -238,7 +238,7 @@ struct Covered<L: Lanes> {
 }
 
 impl<L: Lanes> Covered<L> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn new(l: L, spans: &L::S, bx: u32) -> Self {
         let (bits, center) = l.within(spans, bx * BLOCK_SAMPLES);
         Self {
@@ -257,7 +257,7 @@ struct Part<L: Lanes> {
 }
 
 /// Merges the first polygon of an empty block, in the pixels `allowed`.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn begin<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
     let Part { covered, depth } = ours;
     let alone = covered.whole & allowed;
@@ -282,7 +282,7 @@ fn begin<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
 }
 
 /// Merges a polygon into a block that has depth and no partial coverage, in the pixels `allowed`.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn begin_over<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
     let Part { covered, depth } = ours;
     let old = l.load_depths(&to.depth.0);
@@ -309,7 +309,7 @@ fn begin_over<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64
 }
 
 /// Merges a polygon into a block with partial coverage, in the pixels `allowed`.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn merge<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
     let kind = to.state.kind();
     let slot = to.state.slot();
@@ -366,7 +366,7 @@ struct Waiting<L: Lanes> {
 }
 
 impl<L: Lanes> Waiting<L> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn load(l: L, from: &PartialBlock) -> Self {
         Self {
             bits: l.load_samples(&from.bits),
@@ -389,7 +389,7 @@ struct Pixels {
 }
 
 impl Pixels {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn of<L: Lanes>(ours: &Part<L>, theirs: &Waiting<L>, old: Depths<L>, allowed: u64) -> Self {
         let covered = &ours.covered;
         // The pixels that all parts together complete do not wait for depths: none of their pixels

@@ -27,7 +27,7 @@ const CLIP_PLANES: [DVec4; 5] = {
 };
 
 /// Draws the triangles of a cluster with a vertex that `transform` refused.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn draw_clipped<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
@@ -104,7 +104,7 @@ pub(crate) fn draw_clipped<L: Lanes>(
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn draw_fan<L: Lanes>(
     l: L,
     band: &mut Band<'_>,

@@ -12,7 +12,7 @@ use crate::depth::band::Band;
 use crate::occluder::mesh::{Cluster, OccluderMesh};
 use crate::simd::{Lanes, four};
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn draw_cluster<L: Lanes>(
     l: L,
     band: &mut Band<'_>,

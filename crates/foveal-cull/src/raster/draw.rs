@@ -40,7 +40,7 @@ impl Kernel for Draw<'_, '_> {
     type Output = u64;
 
     /// Returns the number of clusters that the budget left out.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn run<L: Lanes>(self, l: L) -> u64 {
         let Self {
             set,

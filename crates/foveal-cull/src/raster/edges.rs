@@ -48,7 +48,7 @@ impl<L: Lanes> Edges<L> {
     /// The edges of a polygon of three corners (the first again as the fourth) or four, and the
     /// rows that horizontal edges leave. None without area, or with three edges on one side: such a
     /// quadrilateral must be drawn as two triangles.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn of(l: L, x: Doubles<L>, y: Doubles<L>) -> Option<(Self, Option<(f32, f32)>)> {
         const NEXT: [u8; 4] = [1, 2, 3, 0];
         let dx = x.pick(NEXT) - x;
@@ -76,7 +76,7 @@ impl<L: Lanes> Edges<L> {
     }
 
     /// Moves every edge inwards by `by` samples.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn shrink(&mut self, l: L, by: f64) {
         let mut slope = [0.0; 4];
         self.slope.store(&mut slope);

@@ -5,7 +5,7 @@ use crate::format::BLOCK_SAMPLES;
 use crate::simd::{F8, I8, Lanes, four};
 
 /// Twice the signed area; positive if it faces the eye (y points down).
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn area<L: Lanes>(
     x: &[F8<L>; 4],
     y: &[F8<L>; 4],
@@ -16,19 +16,19 @@ pub(super) fn area<L: Lanes>(
     (x[c] - x[a]) * (y[b] - y[a]) - (x[b] - x[a]) * (y[c] - y[a])
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn lowest<L: Lanes>(v: &[F8<L>; 4]) -> F8<L> {
     v[0].min(v[1]).min(v[2].min(v[3]))
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn highest<L: Lanes>(v: &[F8<L>; 4]) -> F8<L> {
     v[0].max(v[1]).max(v[2].max(v[3]))
 }
 
 /// Half-sample steps strictly above the least x and y and up to the greatest. Every sample and
 /// pixel centre lies on a step. Clamped to the band.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn steps_of<L: Lanes>(l: L, band: &Band<'_>, [lo, hi]: [[F8<L>; 2]; 2]) -> [I8<L>; 4] {
     let size = BLOCK_SAMPLES as f32;
     let right = band.blocks_x as f32 * size;
@@ -45,7 +45,7 @@ pub(super) fn steps_of<L: Lanes>(l: L, band: &Band<'_>, [lo, hi]: [[F8<L>; 2]; 2
 }
 
 /// First and last block that hold these steps.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn blocks_of<L: Lanes>(l: L, band: &Band<'_>, steps: [I8<L>; 4]) -> [[i32; 8]; 4] {
     let per_block = l.int((2 * BLOCK_SAMPLES).trailing_zeros() as i32);
     let ends = [band.blocks_x, band.first_row + band.rows];
@@ -58,13 +58,13 @@ pub(super) fn blocks_of<L: Lanes>(l: L, band: &Band<'_>, steps: [I8<L>; 4]) -> [
 }
 
 /// Half-sample steps up to `v`, clamped.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn steps<L: Lanes>(l: L, v: F8<L>, lo: f32, hi: f32) -> I8<L> {
     let c = v.max(l.splat(lo)).min(l.splat(hi));
     (c + c).trunc()
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn out<L: Lanes>(v: F8<L>) -> [f32; 8] {
     let mut a = [0.0; 8];
     v.store(&mut a);

@@ -24,7 +24,7 @@ pub(super) struct Layer<L: Lanes> {
 }
 
 impl<L: Lanes> Layer<L> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn load(l: L, from: &PartialBlock) -> Self {
         Self {
             bits: l.load_samples(&from.bits),
@@ -33,7 +33,7 @@ impl<L: Lanes> Layer<L> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn store(self, to: &mut PartialBlock) {
         self.bits.store(&mut to.bits);
         to.center = self.center;
@@ -41,18 +41,18 @@ impl<L: Lanes> Layer<L> {
         to.any = self.any();
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn any(&self) -> u64 {
         self.bits.any() | self.center
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn full(&self) -> u64 {
         self.bits.all() & self.center
     }
 
     /// Only the pixels whose bit is set.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn keep(self, bits: u64) -> Self {
         Self {
             bits: self.bits.keep(bits),
@@ -62,7 +62,7 @@ impl<L: Lanes> Layer<L> {
     }
 
     /// The union of two layers, at the farther depth where both have samples.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn with(&self, other: &Self) -> Self {
         let (here, there) = (self.any(), other.any());
         let depth = Depths::select(here, self.depth.min(other.depth), other.depth);
@@ -76,7 +76,7 @@ impl<L: Lanes> Layer<L> {
 
 /// Adds the part `ours`, of the pixels `joined`, to a block with a slot whose depth is otherwise
 /// `new`.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn join<L: Lanes>(
     l: L,
     to: BlockMut<'_, '_>,
@@ -108,7 +108,7 @@ pub(super) fn join<L: Lanes>(
 }
 
 /// Drops partial coverage that cannot bring anything nearer than the depth `d`.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn forget_hidden<L: Lanes>(l: L, to: BlockMut<'_, '_>, d: Depths<L>) {
     let slot = to.state.slot();
     let partial = &mut to.slots.partial[slot as usize];
@@ -126,7 +126,7 @@ pub(super) fn forget_hidden<L: Lanes>(l: L, to: BlockMut<'_, '_>, d: Depths<L>) 
 }
 
 /// Drops partial coverage in two layers that cannot bring anything nearer than the depth `d`.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn forget_hidden_layers<L: Lanes>(l: L, to: BlockMut<'_, '_>, d: Depths<L>) {
     let slot = to.state.slot();
     let (front, all) = (
@@ -137,7 +137,7 @@ pub(super) fn forget_hidden_layers<L: Lanes>(l: L, to: BlockMut<'_, '_>, d: Dept
 }
 
 /// Stores what is not hidden behind `d`, in one layer where both would be the same.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn forget<L: Lanes>(to: BlockMut<'_, '_>, slot: u32, front: Layer<L>, all: Layer<L>, d: Depths<L>) {
     let front = front.keep(front.depth.gt(d));
     let kept = all.depth.gt(d);

@@ -53,7 +53,7 @@ const LEVEL: f32 = 1e4;
 
 /// Marks the margins of the first `count` of eight silhouette edges, given by the vertices of their
 /// ends.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn mark_margins<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
@@ -121,7 +121,7 @@ pub(super) fn mark_margins<L: Lanes>(
 }
 
 /// Marks the margin of one silhouette edge.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn mark_margin<L: Lanes>(
     l: L,
     band: &mut Band<'_>,

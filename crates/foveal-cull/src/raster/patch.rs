@@ -84,7 +84,7 @@ pub(super) struct PreparePatch<'a, 'b, 'c> {
 impl Kernel for PreparePatch<'_, '_, '_> {
     type Output = VisibleQuads;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn run<L: Lanes>(self, l: L) -> VisibleQuads {
         let Self {
             band,
@@ -121,7 +121,7 @@ impl Kernel for PreparePatch<'_, '_, '_> {
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn prepare<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
@@ -237,7 +237,7 @@ fn prepare<L: Lanes>(
     }
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn corner<L: Lanes>(l: L, points: &Points, index: &[u8; 8]) -> (F8<L>, F8<L>, F8<L>) {
     (
         l.gather(&points.x, index),
@@ -248,7 +248,7 @@ fn corner<L: Lanes>(l: L, points: &Points, index: &[u8; 8]) -> (F8<L>, F8<L>, F8
 
 /// Steepness of a triangle (change of depth per sample along x plus along y), and whether it may
 /// belong to a patch.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn judge<L: Lanes>(
     [a, b, c]: [(F8<L>, F8<L>, F8<L>); 3],
     sides: F8<L>,
@@ -264,7 +264,7 @@ fn judge<L: Lanes>(
     (change / f, faces & flat)
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn greatest([a, b, c, d, e, f, g, h]: [f32; 8]) -> f32 {
     let (low, high) = (
         larger(larger(a, b), larger(c, d)),

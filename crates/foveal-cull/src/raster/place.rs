@@ -78,7 +78,7 @@ pub(super) fn crossing(screen: &Screen<'_>, cluster: &Cluster) -> Option<Place> 
 }
 
 /// The candidate at a place; none if it covers no sample.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn candidate(place: &Place, width: f32, height: f32) -> Option<Candidate> {
     let [x0, y0, x1, y1] = place.rect;
     // Nothing between two half-sample steps: no sample can be covered.

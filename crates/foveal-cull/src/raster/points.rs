@@ -38,7 +38,7 @@ impl Default for Points {
 
 /// Fills `points` from `at` on. Vertices for the clipper get NaN, which no test accepts; returns
 /// whether there are any.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(super) fn transform(
     points: &mut Points,
     at: usize,

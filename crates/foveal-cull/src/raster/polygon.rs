@@ -29,7 +29,7 @@ const MARGIN: f64 = 0.4;
 
 impl<L: Lanes> Polygon<L> {
     /// Moves every edge inwards by `by` samples.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn shrink(&mut self, l: L, by: f32) {
         self.edges.shrink(l, by.into());
         if let Some((after, last)) = &mut self.rows {
@@ -41,7 +41,7 @@ impl<L: Lanes> Polygon<L> {
 }
 
 /// Rounded up. Casts saturate.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn up(v: f64) -> u32 {
     let whole = v as u32;
     whole.saturating_add(u32::from(f64::from(whole) < v))
@@ -52,7 +52,7 @@ fn up(v: f64) -> u32 {
 const WORK_OF_POLYGON: u32 = 5;
 const WORK_OF_ROW: u32 = 1;
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
     let [bx0, by0, bx1, by1] = polygon.blocks;
     let size = f64::from(BLOCK_SAMPLES);

@@ -231,7 +231,7 @@ struct Select<'a> {
 impl Kernel for Select<'_> {
     type Output = ();
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn run<L: Lanes>(self, l: L) {
         let Self {
             choice,

@@ -29,7 +29,7 @@ const WHOLE_PIXEL: f32 = 2.0;
 const SAMPLES_ONLY: f32 = 1.5 + 1.0 / 64.0;
 
 /// Sets up and draws eight quads from screen positions; returns the number of polygons drawn.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn draw_eight<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
@@ -153,7 +153,7 @@ struct Corners<L: Lanes> {
 }
 
 impl<L: Lanes> Corners<L> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn gather(l: L, points: &Points, index: [&[u8; 8]; 4]) -> Self {
         Self {
             x: four!(c => l.gather(&points.x, index[c])),
@@ -162,7 +162,7 @@ impl<L: Lanes> Corners<L> {
     }
 
     /// Twice the areas of both triangles.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn areas(&self) -> [F8<L>; 2] {
         [
             area(&self.x, &self.y, 0, 1, 2),
@@ -172,7 +172,7 @@ impl<L: Lanes> Corners<L> {
 
     /// Reverses two-sided quads that face away, and returns which. The larger triangle decides the
     /// side. Its partner, if it faces the other way, is dropped.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn turn_to_eye(&mut self, l: L) -> M8<L> {
         let [f0, f1] = self.areas();
         let reversed = (f0 + f1).lt(l.splat(0.0));
@@ -191,7 +191,7 @@ struct Front<L: Lanes> {
 
 impl<L: Lanes> Front<L> {
     /// `kept`: above zero for triangles that count at all.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn of(l: L, corners: &Corners<L>, kept: Option<&[[f32; 8]; 2]>) -> Self {
         let zero = l.splat(0.0);
         let areas = corners.areas();
@@ -209,7 +209,7 @@ impl<L: Lanes> Front<L> {
 
     /// A bit per quad that is convex on the screen: each of the four triangles that its corners
     /// make faces the eye.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn convex(&self, l: L, corners: &Corners<L>) -> u32 {
         let zero = l.splat(0.0);
         let [f0, f1] = self.areas;
@@ -219,7 +219,7 @@ impl<L: Lanes> Front<L> {
     }
 
     /// Quads that may leave anything when they shrink for a region.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn survives_shrinking(
         &self,
         l: L,
@@ -244,7 +244,7 @@ struct Extent<L: Lanes> {
 }
 
 impl<L: Lanes> Extent<L> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn of(corners: &Corners<L>) -> Self {
         let (x, y) = (&corners.x, &corners.y);
         Self {
@@ -253,7 +253,7 @@ impl<L: Lanes> Extent<L> {
     }
 
     /// Width and height.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn size(&self) -> (F8<L>, F8<L>) {
         let [[x_lo, y_lo], [x_hi, y_hi]] = self.ends;
         (x_hi - x_lo, y_hi - y_lo)
@@ -273,7 +273,7 @@ struct Planes<L: Lanes> {
 }
 
 impl<L: Lanes> Planes<L> {
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn of(l: L, corners: &Corners<L>, z: &[F8<L>; 4], front: &Front<L>) -> Self {
         let (x, y) = (&corners.x, &corners.y);
         let [f0, f1] = front.areas;
@@ -297,7 +297,7 @@ impl<L: Lanes> Planes<L> {
     }
 
     /// What the planes are lowered by, so that they hold for whole pixels however they are rounded.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn slack(
         &self,
         l: L,
@@ -328,7 +328,7 @@ const SHAPES: [[u8; 4]; 5] = {
     [first, second, [0, 1, 2, 3], first, second]
 };
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn swap<L: Lanes>(reversed: M8<L>, v: [F8<L>; 4]) -> [F8<L>; 4] {
     [
         v[0],
@@ -339,7 +339,7 @@ fn swap<L: Lanes>(reversed: M8<L>, v: [F8<L>; 4]) -> [F8<L>; 4] {
 }
 
 /// Second, third and left-over corner of the triangle that gives the plane.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn pick<L: Lanes>(second: M8<L>, v: &[F8<L>; 4]) -> (F8<L>, F8<L>, F8<L>) {
     (
         second.select(v[2], v[1]),

@@ -46,7 +46,7 @@ impl VisibleQuads {
 
     /// Tests the quads of a one-sided cluster, and keeps their corners. Quads with a vertex for the
     /// clipper are not among the result.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn of<L: Lanes>(
         l: L,
         band: &Band<'_>,
