@@ -28,6 +28,7 @@ use foveal_host::progress::progress_bar;
 use foveal_host::{atomic_file, console, scene_source, values};
 use rows::Row;
 
+use super::figures::check_figures;
 use super::subject::warn;
 
 /// Arguments of `foveal bench culling`.
@@ -106,7 +107,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let json_to_stdout = args.json.as_deref() == Some(Path::new("-"));
     let json_file = args.json.as_ref().filter(|_| !json_to_stdout);
     if let Some(file) = json_file {
-        atomic_file::check_writable(file)?;
+        check_figures(file, &args.scenes)?;
     }
     let rows = measure(args)?;
     if args.json.is_some() {

@@ -6,7 +6,8 @@ use foveal::Gpu;
 use serde::Serialize;
 
 use foveal_host::clock::now_ms;
-use foveal_host::{atomic_file, console, gpu};
+use foveal_host::failure::usage;
+use foveal_host::{atomic_file, console, gpu, scene_source};
 
 /// What every such bench is told.
 #[derive(Debug, Clone, clap::Args)]
@@ -20,16 +21,27 @@ pub(super) struct FigureArgs {
     json: Option<PathBuf>,
 }
 
+/// Fails where figures cannot be written to `file`, or would replace one of `scenes`.
+pub(super) fn check_figures(file: &Path, scenes: &[String]) -> anyhow::Result<()> {
+    let replaces = |scene: &String| scene_source::is_replaced_by(scene, file);
+    if scenes.iter().any(replaces) {
+        return usage("--json names the scene's own file");
+    }
+    atomic_file::check_writable(file)
+}
+
 impl FigureArgs {
     fn file(&self) -> Option<&Path> {
         self.json.as_deref().filter(|path| path.as_os_str() != "-")
     }
 
-    /// Starts the clock and opens the device. Fails where the figures could not be written later;
-    /// nothing shall be measured for nothing.
-    pub(super) fn begin(&self) -> anyhow::Result<Gpu> {
+    /// Starts the clock and opens the device. Fails where the figures could not be written later, as
+    /// nothing shall be measured for nothing, or would replace one of `scenes`.
+    pub(super) fn begin(&self, scenes: &[String]) -> anyhow::Result<Gpu> {
         now_ms();
-        self.file().map_or(Ok(()), atomic_file::check_writable)?;
+        if let Some(file) = self.file() {
+            check_figures(file, scenes)?;
+        }
         gpu::open(self.adapter.as_deref())
     }
 

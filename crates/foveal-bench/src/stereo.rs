@@ -166,7 +166,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         [] => SCENES.map(str::to_owned).to_vec(),
         given => given.to_vec(),
     };
-    let gpu = args.figures.begin()?;
+    args.camera.check()?;
+    let gpu = args.figures.begin(&scenes)?;
     let (ways, skipped) = usable(&gpu)?;
     let mut rows = Vec::new();
     for name in &scenes {

@@ -99,9 +99,11 @@ pub(super) struct Subject {
 }
 
 impl SubjectArgs {
-    /// Opens the device; fails before that where the figures could not be written.
+    /// Opens the device; fails before that where the figures could not be written, or where the
+    /// camera's flags contradict each other.
     pub(super) fn begin(&self) -> anyhow::Result<Gpu> {
-        self.figures.begin()
+        self.camera.check()?;
+        self.figures.begin(std::slice::from_ref(&self.scene))
     }
 
     /// The scene as `foveal render` draws it with so many lights added.

@@ -52,6 +52,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
 
 fn host(args: &Args) -> anyhow::Result<Host> {
     refuse_stdin(&args.scene)?;
+    args.camera.check()?;
     let (settings, is_sized) = args.settings.resolve_sized()?;
     gpu::check(args.adapter.as_deref())?;
     let (first, camera) = (args.scene.clone(), args.camera.clone());

@@ -57,6 +57,9 @@ fn words_that_contradict_each_other_are_usage_errors() {
         ("render -o a.png --target 1,2,3", "--eye"),
         ("render -o a.png --up 0,0,1", "--eye"),
         ("render -o a.png --eye 1,2,3 --target 1,2,3", "same point"),
+        ("view --eye 1,2,3 --target 1,2,3", "same point"),
+        ("bench verdict --eye 1,2,3 --target 1,2,3", "same point"),
+        ("bench stereo --eye 1,2,3 --target 0,0,0 --up 0,0,0", "--up"),
         (
             "render -o a.png --eye 1,2,3 --target 0,0,0 --up 0,0,0",
             "--up",
@@ -114,6 +117,9 @@ fn no_file_is_written_over_the_scene() {
     for line in [
         "render triangle.gltf -o a.png --stats ./triangle.gltf",
         "cull triangle.gltf --json triangle.gltf",
+        "bench verdict triangle.gltf --json ./triangle.gltf",
+        "bench stereo cornell triangle.gltf --json triangle.gltf",
+        "bench culling cornell triangle.gltf --json triangle.gltf",
     ] {
         let words: Vec<&str> = line.split_whitespace().collect();
         let output = foveal_in(folder.path(), &words);
