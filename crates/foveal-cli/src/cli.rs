@@ -72,11 +72,62 @@ impl Command {
 
 #[cfg(test)]
 mod tests {
-    use clap::{CommandFactory, Parser};
+    use clap::{Args, Command, CommandFactory, Parser};
+    use foveal_host::camera::CameraArgs;
+    use foveal_host::culling::{CullingArgs, ViewArgs};
+    use foveal_host::import_args::ImportArgs;
+    use foveal_host::settings::SettingsArgs;
+
+    use crate::render::FrameArgs;
 
     #[test]
     fn the_arguments_do_not_contradict_each_other() {
         super::Cli::command().debug_assert();
+    }
+
+    /// A heading holds for the flags of its group alone, not for those that come after it.
+    #[test]
+    fn the_help_has_each_flag_under_the_heading_of_its_group() {
+        fn names<A: Args>() -> Vec<String> {
+            let command = A::augment_args(Command::new("group"));
+            command
+                .get_arguments()
+                .map(|arg| arg.get_id().to_string())
+                .collect()
+        }
+        fn check(command: &Command, groups: &[(&str, Vec<String>)]) -> usize {
+            let mut grouped = 0;
+            for arg in command.get_arguments() {
+                let heading = arg.get_help_heading();
+                if let Some((_, names)) = groups.iter().find(|(group, _)| heading == Some(*group)) {
+                    let name = arg.get_id().as_str();
+                    assert!(
+                        names.iter().any(|own| own == name),
+                        "{}: {name}",
+                        command.get_name()
+                    );
+                    grouped += 1;
+                }
+            }
+            grouped
+                + command
+                    .get_subcommands()
+                    .map(|c| check(c, groups))
+                    .sum::<usize>()
+        }
+        let groups = [
+            (
+                "Camera",
+                [names::<CameraArgs>(), names::<ViewArgs>()].concat(),
+            ),
+            (
+                "Culling",
+                [names::<CullingArgs>(), names::<SettingsArgs>()].concat(),
+            ),
+            ("Scene files", names::<ImportArgs>()),
+            ("Time", names::<FrameArgs>()),
+        ];
+        assert!(check(&super::Cli::command(), &groups) > 50);
     }
 
     #[test]

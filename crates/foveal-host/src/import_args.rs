@@ -8,15 +8,14 @@ use crate::values;
 
 /// How scene files are read.
 #[derive(Debug, Clone, Default, clap::Args)]
-#[command(next_help_heading = "Scene files")]
 pub struct ImportArgs {
     /// Animation to play, by name or else by number from 0 (`foveal scene info` lists them); `all`:
     /// all at once, even where one has this name [default: 0]
-    #[arg(long, value_name = "NAME|NUMBER|all")]
+    #[arg(long, help_heading = "Scene files", value_name = "NAME|NUMBER|all")]
     clip: Option<Clip>,
 
     /// Variant of materials to show, by name or by number from 0 [default: none]
-    #[arg(long, value_name = "NAME|NUMBER")]
+    #[arg(long, help_heading = "Scene files", value_name = "NAME|NUMBER")]
     variant: Option<String>,
 
     /// Keep textures in blocks on the device. `small`, also without a value: BC1, BC4 and BC5, and
@@ -24,6 +23,7 @@ pub struct ImportArgs {
     /// quite the same [default: off]
     #[arg(
         long,
+        help_heading = "Scene files",
         value_name = "off|small|fine",
         value_parser = texture_compression,
         num_args = 0..=1,
@@ -34,37 +34,37 @@ pub struct ImportArgs {
 
     /// Most memory for textures while they are loaded; larger pictures are reduced to fit [default:
     /// 4.3GB]
-    #[arg(long, value_name = "SIZE", value_parser = values::bytes)]
+    #[arg(long, help_heading = "Scene files", value_name = "SIZE", value_parser = values::bytes)]
     max_texture_memory: Option<u64>,
 
     /// Largest side of a texture in texels; larger pictures are halved until they fit [default:
     /// 8192]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, help_heading = "Scene files", value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     max_texture_size: Option<u32>,
 
     /// Most vertices of all meshes together, morph targets included [default: 67108864]
-    #[arg(long, value_name = "N")]
+    #[arg(long, help_heading = "Scene files", value_name = "N")]
     max_vertices: Option<u64>,
 
     /// Most instances: primitives times nodes times elements of GPU instancing [default: 4194304]
-    #[arg(long, value_name = "N")]
+    #[arg(long, help_heading = "Scene files", value_name = "N")]
     max_instances: Option<u64>,
 
     /// Most triangles, each counted once per instance [default: 4294967296]
-    #[arg(long, value_name = "N")]
+    #[arg(long, help_heading = "Scene files", value_name = "N")]
     max_triangles: Option<u64>,
 
     /// Most bytes of the scene file and the files that it names, together [default: 4.3GB]
-    #[arg(long, value_name = "SIZE", value_parser = values::bytes)]
+    #[arg(long, help_heading = "Scene files", value_name = "SIZE", value_parser = values::bytes)]
     max_file_size: Option<u64>,
 
     /// Bytes of memory that a file may ask for per byte of its own, beyond 160 MiB [default: 256]
-    #[arg(long, value_name = "N")]
+    #[arg(long, help_heading = "Scene files", value_name = "N")]
     max_expansion: Option<u64>,
 
     /// Read files outside the scene's own folder where the scene names them, also through symbolic
     /// links
-    #[arg(long)]
+    #[arg(long, help_heading = "Scene files")]
     outside_files: bool,
 }
 

@@ -89,27 +89,26 @@ pub(crate) struct Args {
 
 /// Which moments are drawn.
 #[derive(Debug, Clone, clap::Args)]
-#[command(next_help_heading = "Time")]
 pub(crate) struct FrameArgs {
     /// Time of a single picture in seconds
-    #[arg(long, value_name = "S", value_parser = values::time_s, conflicts_with = "frames")]
+    #[arg(long, help_heading = "Time", value_name = "S", value_parser = values::time_s, conflicts_with = "frames")]
     pub(super) time: Option<f32>,
 
     /// Nothing moves: the frame before, from which motion is taken, is the same as this one
-    #[arg(long, conflicts_with = "frames")]
+    #[arg(long, help_heading = "Time", conflicts_with = "frames")]
     pub(super) still: bool,
 
     /// Range of frames to draw: A up to but not including B, or 0 up to N; frame n is at n / fps
     /// seconds
-    #[arg(long, value_name = "A..B|N", value_parser = values::frames)]
+    #[arg(long, help_heading = "Time", value_name = "A..B|N", value_parser = values::frames)]
     pub(super) frames: Option<Range<u32>>,
 
     /// Frames per second; the frame before, from which motion is taken, is 1 / fps seconds earlier
-    #[arg(long, value_name = "N", value_parser = values::positive, default_value_t = 30.0)]
+    #[arg(long, help_heading = "Time", value_name = "N", value_parser = values::positive, default_value_t = 30.0)]
     pub(super) fps: f32,
 
     /// Skip frames whose file exists already
-    #[arg(long, requires = "frames")]
+    #[arg(long, help_heading = "Time", requires = "frames")]
     pub(super) skip_existing: bool,
 
     /// Draw one of N equal parts of the range: I from 0 to N - 1; `auto`: the part of this job in a
@@ -117,6 +116,7 @@ pub(crate) struct FrameArgs {
     /// --video: each job's film would replace the others'
     #[arg(
         long,
+        help_heading = "Time",
         value_name = "I/N|auto",
         requires = "frames",
         conflicts_with = "video"
@@ -126,12 +126,18 @@ pub(crate) struct FrameArgs {
 
     /// Share the frames with all jobs that run the same command in the same folder: each draws
     /// frames that are missing and that no other job is drawing, and ends when all are there
-    #[arg(long, requires = "frames", conflicts_with = "video")]
+    #[arg(
+        long,
+        help_heading = "Time",
+        requires = "frames",
+        conflicts_with = "video"
+    )]
     pub(super) share: bool,
 
     /// Time in seconds after which the frame of a shared job that gives no sign of life is drawn by
     /// another
-    #[arg(long, value_name = "S", requires = "share", value_parser = values::positive, default_value_t = 120.0)]
+    #[arg(long, help_heading = "Time", value_name = "S")]
+    #[arg(requires = "share", value_parser = values::positive, default_value_t = 120.0)]
     share_expiry: f32,
 }
 

@@ -31,6 +31,8 @@ use foveal_host::video::{self, Video};
 use foveal_host::{atomic_file, console, gpu, scene_source};
 
 pub(crate) use args::Args;
+#[cfg(test)]
+pub(crate) use args::FrameArgs;
 use frame_files::{FrameJob, FramePattern, Moment};
 use sharing::Turns;
 use stats::{CommandStats, MedianStats, NamedSceneStats, NumberedFrameStats, RunStats};

@@ -8,35 +8,36 @@ use crate::{command_line, scene_source, values};
 
 /// Where the frame is seen from.
 #[derive(Debug, Clone, Default, clap::Args)]
-#[command(next_help_heading = "Camera")]
 pub struct CameraArgs {
     /// Camera of the scene, by name or by number from 0; `overview`: the whole scene from outside;
     /// `inside`: the longest view within it [default: the scene's first camera; without cameras
     /// `inside` where there is an inside, else `overview`]
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target"])]
+    #[arg(long, help_heading = "Camera", value_name = "NAME", conflicts_with_all = ["eye", "target"])]
     pub(super) camera: Option<String>,
 
     /// Position of the eye in metres
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Camera", value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     #[arg(requires = "target")]
     pub(super) eye: Option<Vec3>,
 
     /// Point to look at in metres
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Camera", value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     #[arg(requires = "eye")]
     pub(super) target: Option<Vec3>,
 
     /// Direction that is up in the picture [default: 0,1,0]
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true, requires = "eye")]
+    #[arg(long, help_heading = "Camera", value_name = "X,Y,Z", value_parser = values::vec3)]
+    #[arg(allow_hyphen_values = true, requires = "eye")]
     pub(super) up: Option<Vec3>,
 
     /// Vertical field of view in degrees [default: the camera's own, else 60]
-    #[arg(long, value_name = "DEG", value_parser = values::fov_deg)]
+    #[arg(long, help_heading = "Camera", value_name = "DEG", value_parser = values::fov_deg)]
     pub(super) fov: Option<f32>,
 
     /// Exact camera, as the window copies it: perspective,FOV_RAD,NEAR_M or
     /// orthographic,HEIGHT_M,NEAR_M,FAR_M, then twelve numbers: right, up, back, eye
-    #[arg(long, value_name = "NUMBERS", value_parser = values::exact_camera, allow_hyphen_values = true)]
+    #[arg(long, help_heading = "Camera", value_name = "NUMBERS", value_parser = values::exact_camera)]
+    #[arg(allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["camera", "eye", "target", "fov"])]
     pub(super) exact_camera: Option<Camera>,
 
@@ -44,7 +45,11 @@ pub struct CameraArgs {
     /// own; `sway`: to and fro around another camera, sideways by 5 cm at up to 5 cm a second, as a
     /// head moves; `turntable`: around the centre of the scene, from another camera or from
     /// `overview`, one turn in 12 seconds
-    #[arg(long, value_name = "FILE.json|demo|sway|turntable")]
+    #[arg(
+        long,
+        help_heading = "Camera",
+        value_name = "FILE.json|demo|sway|turntable"
+    )]
     pub(super) path: Option<String>,
 }
 
