@@ -151,7 +151,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         given => given,
     };
     let gpu = args.subject.begin()?;
-    let mut scene = scene_source::load(&args.subject.scene)?;
+    let mut scene = args.subject.load()?;
     warn(&scene);
     let camera = args.subject.viewpoint(&scene)?.at(&scene, 0.0);
     let mut rows = Vec::new();

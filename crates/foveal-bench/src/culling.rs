@@ -24,6 +24,7 @@ use foveal_host::culling::CullingArgs;
 use foveal_host::culling::Occludees;
 use foveal_host::culling::Occluders;
 use foveal_host::culling::Workers;
+use foveal_host::import_args::ImportArgs;
 use foveal_host::progress::progress_bar;
 use foveal_host::{atomic_file, console, scene_source, values};
 use rows::Row;
@@ -40,6 +41,9 @@ pub struct Args {
 
     #[command(flatten)]
     culling: CullingArgs,
+
+    #[command(flatten)]
+    import: ImportArgs,
 
     /// Cameras: `inside` adds up to 48 at eye height above floors with free space around, found in
     /// the scene, to the scene's own and eight around it. A JSON list, as for `foveal cull`,
@@ -142,7 +146,7 @@ fn measure(args: &Args) -> anyhow::Result<Vec<Row>> {
         .collect();
     let mut rows = Vec::new();
     for name in &args.scenes {
-        let scene = scene_source::load(name)?;
+        let scene = scene_source::load_among(name, &args.import.options())?;
         warn(&scene);
         let occluders = Occluders::of_scene(&scene, &args.culling.occluders)?;
         let boxes = boxes::random(scene.bounds(), args.boxes);

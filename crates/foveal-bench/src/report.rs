@@ -31,6 +31,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 
 use bench::Bench;
+use foveal_host::import_args::ImportArgs;
 use foveal_host::{atomic_file, console, scene_source, values};
 
 /// Version of the JSON's shape.
@@ -75,6 +76,9 @@ pub struct Args {
     /// Show no progress
     #[arg(short, long)]
     quiet: bool,
+
+    #[command(flatten)]
+    import: ImportArgs,
 }
 
 /// Runs everything and writes the report.
@@ -171,9 +175,10 @@ fn progress(quiet: bool, steps: u64) -> ProgressBar {
 #[must_use]
 pub fn planned_commands(scene: &str) -> Vec<Vec<String>> {
     let place = Path::new("figures");
+    let import = ["--clip", "0", "--outside-files"].map(str::to_owned);
     let words = |bench: &Bench| {
         let mut command = Command::new("foveal");
-        command.args(bench.words(scene, (480, 270), true, Some("0")));
+        command.args(bench.words(scene, (480, 270), true, Some("0"), &import));
         bench.output(&mut command, place, &place.join("figures.json"));
         let words = command.get_args().map(|word| word.to_string_lossy());
         words.map(std::borrow::Cow::into_owned).collect()
@@ -190,7 +195,8 @@ fn measure(
     progress: &ProgressBar,
 ) -> Value {
     let start = Instant::now();
-    let words = bench.words(&args.scene, size, args.quick, args.adapter.as_deref());
+    let (adapter, import) = (args.adapter.as_deref(), args.import.flags());
+    let words = bench.words(&args.scene, size, args.quick, adapter, &import);
     let mut result = json!({
         "name": bench.name,
         "title": bench.title,
@@ -225,7 +231,7 @@ fn measure(
     }
     result["rows"] = merge::passes(bench, &all);
     if !bench.pairs.is_empty() {
-        match pictures::draw(bench, &args.scene, size, args.adapter.as_deref()) {
+        match pictures::draw(bench, (&args.scene, &args.import), size, adapter) {
             Ok(pictures) => result["pictures"] = pictures.into(),
             Err(error) => {
                 result["status"] = "failed".into();

@@ -16,6 +16,7 @@ use super::figures::FigureArgs;
 use super::subject::{timed_renderer, warn};
 use super::table::{number_text, passes_ms, text};
 use foveal_host::camera::{CameraArgs, Viewpoint};
+use foveal_host::import_args::ImportArgs;
 use foveal_host::{scene_source, values};
 
 /// Version of the JSON's shape.
@@ -73,6 +74,9 @@ pub struct Args {
 
     #[command(flatten)]
     figures: FigureArgs,
+
+    #[command(flatten)]
+    import: ImportArgs,
 }
 
 /// All figures of a run; docs/program.md describes the fields.
@@ -171,7 +175,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let (ways, skipped) = usable(&gpu)?;
     let mut rows = Vec::new();
     for name in &scenes {
-        let mut scene = scene_source::load(name)?;
+        let mut scene = scene_source::load_among(name, &args.import.options())?;
         warn(&scene);
         scene.light_by_default();
         let camera = Viewpoint::choose(&args.camera, &scene, name)?.at(&scene, 0.0);

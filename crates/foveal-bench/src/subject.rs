@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::figures::FigureArgs;
 use foveal_host::camera::{CameraArgs, Viewpoint};
+use foveal_host::import_args::ImportArgs;
 use foveal_host::{console, scene_source};
 
 /// Frames that compile shaders, and in which what adapts from frame to frame adapts.
@@ -28,6 +29,9 @@ pub(super) struct SubjectArgs {
 
     #[command(flatten)]
     pub(super) figures: FigureArgs,
+
+    #[command(flatten)]
+    pub(super) import: ImportArgs,
 }
 
 /// A renderer that shows the scene and times its frames.
@@ -106,9 +110,14 @@ impl SubjectArgs {
         self.figures.begin(std::slice::from_ref(&self.scene))
     }
 
+    /// The scene as its file has it.
+    pub(super) fn load(&self) -> anyhow::Result<Scene> {
+        scene_source::load_with(&self.scene, &self.import.options())
+    }
+
     /// The scene as `foveal render` draws it with so many lights added.
     pub(super) fn scene(&self, point_lights: u32) -> anyhow::Result<Scene> {
-        let mut scene = scene_source::load(&self.scene)?;
+        let mut scene = self.load()?;
         scene_source::add_point_lights(&mut scene, point_lights, 0);
         scene.light_by_default();
         Ok(scene)
@@ -142,6 +151,7 @@ impl SubjectArgs {
             words.extend(["--point-lights".to_owned(), point_lights.to_string()]);
         }
         words.extend(self.camera.flags());
+        words.extend(self.import.flags());
         words.extend(self.figures.adapter_flags());
         let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
         words.join(" ")
@@ -162,5 +172,29 @@ impl Subject {
             &self.scene,
             &self.camera,
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        subject: SubjectArgs,
+    }
+
+    #[test]
+    fn what_is_drawn_again_is_read_in_the_same_way() {
+        let words = "bench my.glb --clip Run --max-texture-size 64 --outside-files --adapter 0";
+        let line = Line::try_parse_from(words.split(' ')).unwrap();
+        let said = line.subject.words(3, "a.png");
+        assert_eq!(
+            said,
+            "my.glb --output a.png --warmup 8 --point-lights 3 --clip Run --max-texture-size 64 \
+             --outside-files --adapter 0"
+        );
     }
 }

@@ -354,3 +354,29 @@ fn benches_say_what_is_wrong_with_a_scene() {
         assert!(said.starts_with("warning: mtllib: \"none.mtl\""), "{said}");
     }
 }
+
+#[test]
+fn benches_read_scenes_within_the_limits_that_they_are_given() {
+    let folder = folder();
+    moving_triangle(folder.path());
+    for bench in [
+        "verdict",
+        "culling",
+        "culling-frames",
+        "coarse",
+        "eye",
+        "antialiasing",
+        "variable",
+        "stereo cornell",
+        "all --report r",
+    ] {
+        let line = format!("bench {bench} triangle.gltf --max-vertices 2");
+        let words: Vec<&str> = line.split(' ').collect();
+        fail(folder.path(), &words, &["triangle.gltf", "--max-vertices"]);
+    }
+    // A clip is a file's own; a generated scene beside it has none.
+    let line = "bench culling triangle.gltf cornell --max-vertices 3 --clip 0 --sizes 32x32 --boxes 5 \
+                --repetitions 1 --quiet";
+    let words: Vec<&str> = line.split_whitespace().collect();
+    assert!(common::stdout(&common::succeed(folder.path(), &words)).contains("cornell"));
+}

@@ -123,6 +123,11 @@ impl ImportArgs {
         flags
     }
 
+    /// All of them, as a command has them.
+    pub fn flags(&self) -> Vec<String> {
+        [self.shown_flags(), self.reading_flags()].concat()
+    }
+
     /// The importer's options.
     pub fn options(&self) -> LoadOptions {
         let d = LoadOptions::default();
@@ -253,8 +258,7 @@ mod tests {
                      --max-file-size 2GiB --max-expansion 10 --outside-files";
         for words in [words, "foveal", "foveal --max-texture-size 64"] {
             let line = Line::try_parse_from(words.split(' ')).unwrap().import;
-            let written = [line.shown_flags(), line.reading_flags()].concat();
-            let again = Line::try_parse_from(["foveal".to_owned()].into_iter().chain(written));
+            let again = Line::try_parse_from(["foveal".to_owned()].into_iter().chain(line.flags()));
             assert_eq!(again.unwrap().import.options(), line.options(), "{words}");
         }
     }

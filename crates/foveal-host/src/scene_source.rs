@@ -8,7 +8,7 @@ use anyhow::{Context, bail};
 use foveal::Timing;
 use foveal_generate as generate;
 use foveal_generate::{DemoOptions, GenerateError};
-use foveal_scene::{Camera, LoadOptions, LoadTimings, Scene, TextureCompression};
+use foveal_scene::{Camera, Clip, LoadOptions, LoadTimings, Scene, TextureCompression};
 
 use crate::atomic_file;
 use crate::import_args::{self, NoSuchScene};
@@ -57,6 +57,21 @@ pub fn load_timed(
 /// As [`load_timed`], for commands to which the time is all one.
 pub fn load_with(name: &str, options: &LoadOptions) -> anyhow::Result<Scene> {
     load_timed(name, options, &mut Vec::new())
+}
+
+/// As [`load_with`], for commands that show several scenes: clip and variant are those of files, as a
+/// generated scene has neither.
+pub fn load_among(name: &str, options: &LoadOptions) -> anyhow::Result<Scene> {
+    let base = name.split(':').next().unwrap_or(name);
+    if generate::NAMES.contains(&base) {
+        let options = LoadOptions {
+            clip: Clip::default(),
+            variant: None,
+            ..options.clone()
+        };
+        return load_with(name, &options);
+    }
+    load_with(name, options)
 }
 
 /// As [`load_with`] by the importer's default options.
@@ -166,8 +181,6 @@ fn timing(name: &str, ms: f64) -> Timing {
 
 #[cfg(test)]
 mod tests {
-    use foveal_scene::Clip;
-
     use super::*;
 
     #[test]
@@ -196,6 +209,11 @@ mod tests {
             assert!(error.contains("'cornell'"), "{error}");
         }
         assert!(load_with("cornell", &with(Clip::All)).is_ok());
+        // Among others it is not what is meant.
+        for name in ["cornell", "demo:1000"] {
+            let scene = load_among(name, &with(Clip::Number(7)));
+            assert!(scene.is_ok(), "{name}: {:?}", scene.err());
+        }
     }
 
     #[test]

@@ -24,7 +24,7 @@ pub(super) struct MadeBy {
 
 /// What all rows' commands share.
 pub(super) struct Commands {
-    /// Scene, lights, adapter.
+    /// Scene, lights, how it is read, adapter.
     scene: Vec<String>,
     camera: Vec<String>,
     path: Vec<String>,
@@ -38,6 +38,7 @@ impl Commands {
         if args.point_lights > 0 {
             scene.extend(["--point-lights".to_owned(), args.point_lights.to_string()]);
         }
+        scene.extend(args.subject.import.flags());
         scene.extend(args.subject.figures.adapter_flags());
         Self {
             scene,

@@ -145,13 +145,15 @@ impl Bench {
         }
     }
 
-    /// The command's words, without where its figures go.
+    /// The command's words, without where its figures go; `import` says how the report's scene is
+    /// read.
     pub(super) fn words(
         &self,
         scene: &str,
         size: (u32, u32),
         quick: bool,
         adapter: Option<&str>,
+        import: &[String],
     ) -> Vec<String> {
         let mut words: Vec<String> = self.subcommand.iter().map(|&w| w.to_owned()).collect();
         if self.sized {
@@ -163,6 +165,9 @@ impl Bench {
             && self.subcommand != ["bench", "culling"]
         {
             words.extend(["--adapter".to_owned(), adapter.to_owned()]);
+        }
+        if self.own(quick).contains(&THE_SCENE) {
+            words.extend_from_slice(import);
         }
         words
     }

@@ -15,6 +15,7 @@ use super::bench::Bench;
 use crate::changes::{Changes, changed};
 use foveal_host::camera::{CameraArgs, Viewpoint};
 use foveal_host::difference::{BENCH_DISPLAY, ErrorMap, jod};
+use foveal_host::import_args::ImportArgs;
 use foveal_host::picture::Picture;
 use foveal_host::settings::flags;
 use foveal_host::{gpu, scene_source};
@@ -25,18 +26,21 @@ const FRAMES: u32 = 3;
 /// How well the page's pictures keep what they show.
 const JPEG_QUALITY: u8 = 88;
 
-/// The pairs of a bench.
+/// The pairs of a bench, in a scene that is read by these flags.
 pub(super) fn draw(
     bench: &Bench,
-    scene_name: &str,
+    (scene_name, import): (&str, &ImportArgs),
     size: (u32, u32),
     adapter: Option<&str>,
 ) -> anyhow::Result<Vec<Value>> {
     let gpu = gpu::open(adapter)?;
-    let mut scene = scene_source::load(scene_name)?;
+    let mut scene = scene_source::load_with(scene_name, &import.options())?;
     scene.light_by_default();
     let camera = Viewpoint::choose(&CameraArgs::default(), &scene, scene_name)?.at(&scene, 0.0);
-    let flag = adapter.map_or_else(String::new, |name| format!(" --adapter {}", quoted(name)));
+    let adapter = adapter.into_iter();
+    let flags = adapter.flat_map(|name| ["--adapter".to_owned(), name.to_owned()]);
+    let flags = flags.chain(import.flags());
+    let flags: String = flags.map(|word| format!(" {}", quoted(&word))).collect();
     let mut pictures = Vec::new();
     for pair in bench.pairs {
         let (before, before_settings) = one(&gpu, &scene, &camera, size, pair.before)?;
@@ -45,8 +49,8 @@ pub(super) fn draw(
         let shown = before_settings.picture_size();
         pictures.push(json!({
             "title": pair.title,
-            "before_flags": spelled(scene_name, "before.png", &before_settings, &flag),
-            "after_flags": spelled(scene_name, "after.png", &after_settings, &flag),
+            "before_flags": spelled(scene_name, "before.png", &before_settings, &flags),
+            "after_flags": spelled(scene_name, "after.png", &after_settings, &flags),
             "compare": format!("foveal compare before.png after.png --display {BENCH_DISPLAY}"),
             "flip_mean": map.mean(),
             "jod": jod(&before, &after),
@@ -72,10 +76,10 @@ pub(super) fn strip(report: &mut Value) {
 }
 
 /// The command that draws it.
-fn spelled(scene: &str, output: &str, settings: &Settings, adapter: &str) -> String {
+fn spelled(scene: &str, output: &str, settings: &Settings, more: &str) -> String {
     let (scene, flags) = (quoted(scene), flags(settings).join(" "));
     let warmup = FRAMES - 1;
-    format!("foveal render {scene} --output {output} --warmup {warmup} {flags}{adapter}")
+    format!("foveal render {scene} --output {output} --warmup {warmup} {flags}{more}")
 }
 
 fn one(
