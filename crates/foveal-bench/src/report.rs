@@ -31,6 +31,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 
 use bench::Bench;
+use foveal_host::failure::usage;
 use foveal_host::import_args::ImportArgs;
 use foveal_host::{atomic_file, console, scene_source, values};
 
@@ -83,6 +84,11 @@ pub struct Args {
 
 /// Runs everything and writes the report.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
+    if args.scene == scene_source::STDIN {
+        return usage("a report reads its scene many times, standard input only once; name a file");
+    }
+    // Nothing of an earlier report is lost where there is nothing to measure.
+    scene_source::load_with(&args.scene, &args.import.options())?;
     for folder in std::iter::once(&args.report).chain(&args.markdown) {
         std::fs::create_dir_all(folder)
             .with_context(|| format!("cannot make the folder '{}'", folder.display()))?;

@@ -55,6 +55,13 @@ pub(super) fn warn(scene: &Scene) {
     warnings.for_each(|warning| console::warn(&warning.text));
 }
 
+/// A scene with so many lights added, as `foveal render` adds them.
+pub(super) fn lit(mut scene: Scene, point_lights: u32) -> Scene {
+    scene_source::add_point_lights(&mut scene, point_lights, 0);
+    scene.light_by_default();
+    scene
+}
+
 /// Where a camera that sways sideways is in a frame: two centimetres a frame, to and fro within
 /// half a metre.
 pub(super) fn swayed(camera: &Camera, frame: u32) -> Camera {
@@ -117,10 +124,7 @@ impl SubjectArgs {
 
     /// The scene as `foveal render` draws it with so many lights added.
     pub(super) fn scene(&self, point_lights: u32) -> anyhow::Result<Scene> {
-        let mut scene = self.load()?;
-        scene_source::add_point_lights(&mut scene, point_lights, 0);
-        scene.light_by_default();
-        Ok(scene)
+        Ok(lit(self.load()?, point_lights))
     }
 
     /// Where the scene is seen from.

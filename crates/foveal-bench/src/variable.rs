@@ -10,7 +10,7 @@ use foveal_scene::{Camera, ProceduralLayers, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
-use super::subject::{SubjectArgs, timed_renderer, warn};
+use super::subject::{SubjectArgs, lit, timed_renderer, warn};
 use super::table::{jod_text, name_of, number_text, passes_ms, text};
 use foveal_host::difference::Nearness;
 use foveal_host::picture::Picture;
@@ -104,13 +104,13 @@ const COSTS: [&str; 3] = ["plain", "textured", "procedural"];
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let gpu = args.subject.begin()?;
+    // Once: standard input has it only once.
+    let own = args.subject.load()?;
+    warn(&own);
     let mut rows = Vec::new();
     for &lights in &args.point_lights {
         for cost in COSTS {
-            let mut scene = args.subject.scene(lights)?;
-            if rows.is_empty() {
-                warn(&scene);
-            }
+            let mut scene = lit(own.clone(), lights);
             if cost != "textured" {
                 strip_textures(&mut scene);
             }

@@ -374,6 +374,7 @@ fn benches_read_scenes_within_the_limits_that_they_are_given() {
         let words: Vec<&str> = line.split(' ').collect();
         fail(folder.path(), &words, &["triangle.gltf", "--max-vertices"]);
     }
+    assert!(!folder.path().join("r").exists());
     // A clip is a file's own; a generated scene beside it has none.
     let line = "bench culling triangle.gltf cornell --max-vertices 3 --clip 0 --sizes 32x32 --boxes 5 \
                 --repetitions 1 --quiet";

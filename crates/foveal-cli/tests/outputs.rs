@@ -142,6 +142,37 @@ fn a_scene_comes_from_standard_input() {
     );
 }
 
+/// A .glb of the moving triangle.
+fn triangle_glb(folder: &Path) -> Vec<u8> {
+    let file = fs::read_to_string(moving_triangle(folder)).unwrap();
+    let mut json = file.replace(r#""uri":"triangle.bin""#, r#""name":"inside""#);
+    json += &" ".repeat(json.len().next_multiple_of(4) - json.len());
+    let bytes = fs::read(folder.join("triangle.bin")).unwrap();
+    let length = |bytes: usize| (bytes as u32).to_le_bytes();
+    let mut glb = [*b"glTF", length(2), length(28 + json.len() + bytes.len())].concat();
+    for (kind, chunk) in [(b"JSON", json.as_bytes()), (b"BIN\0", &bytes[..])] {
+        glb.extend([length(chunk.len()), *kind].concat());
+        glb.extend(chunk);
+    }
+    glb
+}
+
+#[test]
+fn a_bench_reads_standard_input_once() {
+    let folder = folder();
+    let glb = triangle_glb(folder.path());
+    let line = "bench variable - --size 16x16 --rounds 1 --point-lights 1";
+    let words: Vec<&str> = line.split(' ').collect();
+    let mut child = (command(folder.path(), &words).stdin(Stdio::piped()))
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(&glb).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
 /// A program named ffmpeg that notes its words and keeps the frames as they come.
 #[cfg(unix)]
 fn stand_in(folder: &Path, script: &str) -> String {

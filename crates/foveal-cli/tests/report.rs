@@ -138,21 +138,30 @@ fn what_is_no_report_is_refused() {
 fn a_bench_that_fails_is_in_the_report() {
     let folder = folder();
     let words = [
-        "bench",
-        "all",
-        "missing.glb",
-        "--quick",
-        "--only",
-        "baseline,culling",
-        "--report",
-        "r",
+        "bench", "all", "cornell", "--quick", "--size", "99999x4", "--only", "baseline",
+        "--report", "r",
     ];
-    fail(folder.path(), &words, &["baseline", "missing.glb"]);
+    fail(folder.path(), &words, &["baseline", "99999"]);
     let at = folder.path().join("r");
     let report = json(&at.join("report.json"));
-    assert_eq!(bench(&report, "culling")["status"], "failed");
+    assert_eq!(bench(&report, "baseline")["status"], "failed");
     let page = fs::read_to_string(at.join("report.html")).unwrap();
     assert!(page.contains("failed: "), "the page says so");
+}
+
+#[test]
+fn a_report_of_a_scene_that_is_not_there_takes_no_others_place() {
+    let folder = folder();
+    let at = folder.path().join("r");
+    fs::create_dir(&at).unwrap();
+    fs::write(at.join("report.json"), "an earlier one").unwrap();
+    let words = ["bench", "all", "missing.glb", "--quick", "--report", "r"];
+    fail(folder.path(), &words, &["missing.glb", "cornell"]);
+    assert_eq!(common::names(&at), ["report.json"]);
+    assert_eq!(
+        fs::read_to_string(at.join("report.json")).unwrap(),
+        "an earlier one"
+    );
 }
 
 /// Loads the page in a browser: its script has run, and the console holds no error.

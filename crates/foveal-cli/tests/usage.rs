@@ -95,6 +95,7 @@ fn words_that_contradict_each_other_are_usage_errors() {
         ("compare a.png b.png --diff x.jpg", ".png"),
         ("compare a.png b.png --heat-map -", ".png"),
         ("bench diff a.json b.json --page ./b.json", "is compared"),
+        ("bench all - --report r", "standard input"),
         ("cull --depth a.png --overlay ./a.png", "same file"),
         ("cull --depth a.png --json ./a.png", "same file"),
     ];
