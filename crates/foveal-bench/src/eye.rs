@@ -90,14 +90,15 @@ struct Seen {
 
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
-    let subject = args.subject.open(args.point_lights)?;
-    let path = args.subject.camera.along_a_path(&args.subject.scene);
-    let along = args.subject.along(&path, &subject.scene)?;
-    let at_rest = args.subject.viewpoint(&subject.scene)?;
     let screens = match args.display.as_slice() {
         [] => screen::ALL.to_vec(),
         given => given.to_vec(),
     };
+    screens.iter().try_for_each(|one| one.check(args.fit()))?;
+    let subject = args.subject.open(args.point_lights)?;
+    let path = args.subject.camera.along_a_path(&args.subject.scene);
+    let along = args.subject.along(&path, &subject.scene)?;
+    let at_rest = args.subject.viewpoint(&subject.scene)?;
     let commands = Commands::new(args, &path);
     let mut studio = Studio::new(&subject, Rc::new(at_rest), Rc::new(along));
     let mut times = Times::default();

@@ -1,6 +1,7 @@
 //! Displays with all their pixels, and what of them is drawn.
 
 use foveal::Settings;
+use foveal_host::failure::usage;
 use foveal_vdp::{Display, Extent};
 
 use super::ways::{Follows, Way};
@@ -73,6 +74,18 @@ pub(super) struct Shown {
 }
 
 impl Screen {
+    /// Fails where the part that fits is less than a degree across: neither rates nor metric take that.
+    pub(super) fn check(&self, fit: Fit) -> anyhow::Result<()> {
+        let shown = self.shown(fit);
+        if Display::parse(&shown.spelled).is_some() {
+            return Ok(());
+        }
+        usage(format!(
+            "--size: {} pixels of the display '{}' are {} degrees across; the least is 1",
+            shown.width, self.name, shown.spelled
+        ))
+    }
+
     /// The display's centre, with as many pixels per degree as the whole has.
     pub(super) fn shown(&self, fit: Fit) -> Shown {
         let whole = Display::named(self.name).unwrap_or(Display::DEGREES_60);
@@ -143,6 +156,18 @@ mod tests {
             assert!(drawn.is_ok(), "{}", part.spelled);
         }
         assert!(fit("8x9").is_err() && named("sofa").is_err());
+    }
+
+    #[test]
+    fn a_part_of_less_than_a_degree_is_refused() {
+        let phone = named("phone").unwrap();
+        let check = |size: &str| phone.check(fit(size).unwrap());
+        assert!(check("160x90").is_ok() && check("whole").is_ok());
+        let error = check("64x36").unwrap_err().to_string();
+        assert!(
+            error.contains("64 pixels of the display 'phone'"),
+            "{error}"
+        );
     }
 
     #[test]
