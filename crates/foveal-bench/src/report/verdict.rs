@@ -110,11 +110,21 @@ fn best(f: &Figures<'_>, at: &str) -> Option<usize> {
     adopted.iter().copied().find(together).or(fastest)
 }
 
+/// Why nothing is there to copy.
+fn keep(f: &Figures<'_>, at: &str) -> &'static str {
+    let mut rows = 0..f.len(&format!("{at}/rows"));
+    if rows.any(|row| f.text(&format!("{at}/rows/{row}/decision")) == "faster-but-visible") {
+        "Nothing that makes this scene faster comes near enough to the plain picture."
+    } else {
+        "Nothing made this scene measurably faster."
+    }
+}
+
 /// The line to copy.
 fn command(f: &Figures<'_>, at: &str) -> Markup {
     html! {
         @match best(f, at) {
-            None => p { "Nothing made this scene measurably faster: keep the defaults." },
+            None => p { (keep(f, at)) " Keep the defaults." },
             Some(row) => {
                 h3 { "To draw it so" }
                 p.copy {
@@ -147,5 +157,12 @@ mod tests {
         rows[4]["ratio"] = 2.4.into();
         assert_eq!(best_of(&rows), Some(4));
         assert_eq!(best_of(&rows[2..3]), None);
+        // What is there to see but not to adopt is not denied.
+        let said = |rows: &[serde_json::Value]| {
+            let report = json!({ "rows": rows });
+            command(&Figures(&report), "").into_string()
+        };
+        assert!(said(&rows[2..3]).contains("near enough"));
+        assert!(said(&[row("e", "skip", 1.0)]).contains("measurably faster"));
     }
 }

@@ -44,6 +44,12 @@ fn compares(stats: &FrameStats) -> bool {
         .any(|pass| pass.name.starts_with("full "))
 }
 
+/// Whether an error says that these settings cannot be drawn here, by this device or at all.
+fn is_refused(error: &anyhow::Error) -> bool {
+    use foveal::Error::{Limit, Setting};
+    matches!(error.downcast_ref(), Some(Setting { .. } | Limit { .. }))
+}
+
 /// Draws the plain settings and the others in turn; what each of the others turned out to be.
 pub(super) fn measure(
     Subject { gpu, scene, camera }: &Subject,
@@ -56,10 +62,8 @@ pub(super) fn measure(
     for settings in chosen {
         sides.push(match Side::new(gpu, scene, settings) {
             Ok(side) => Ok(side),
-            Err(error) => match error.downcast_ref() {
-                Some(foveal::Error::Setting { .. }) => Err(error.to_string()),
-                _ => return Err(error),
-            },
+            Err(error) if is_refused(&error) => Err(error.to_string()),
+            Err(error) => return Err(error),
         });
     }
     let count = sides.iter().flatten().count() + 1;
@@ -209,6 +213,34 @@ mod tests {
             }
         }
         assert!(compared > 0);
+    }
+
+    /// Of 8K pictures lavapipe cannot bind the lists of pixels that half of the candidates have.
+    #[test]
+    fn what_goes_beyond_the_device_is_impossible_and_nothing_else_is() {
+        let limits = wgpu::Limits {
+            max_storage_buffer_binding_size: 4096,
+            ..wgpu::Limits::default()
+        };
+        let plain = Settings::default().with(|s| {
+            s.picture.width = 64;
+            s.picture.height = 48;
+        });
+        let (mut possible, mut refused) = (0, 0);
+        for (_, settings) in candidates_of(&plain, |pass| pass).unwrap() {
+            match settings.validate(&limits) {
+                Ok(()) => possible += 1,
+                Err(error) => {
+                    assert!(is_refused(&error.into()));
+                    refused += 1;
+                }
+            }
+        }
+        assert!(possible > 0 && refused > 0, "{possible} {refused}");
+        let lost = foveal::Error::DeviceLost {
+            reason: "gone".to_owned(),
+        };
+        assert!(!is_refused(&lost.into()));
     }
 
     #[test]
