@@ -206,6 +206,11 @@ fn a_display_adds_the_quality_at_the_gaze() {
         at("b.png", &["--gaze", "0.17,0.27"]),
         at("b.png", &["--display", "h60", "--gaze", "0.17,0.27"])
     );
+    // The eye may look beside the picture.
+    assert_eq!(
+        at("b.png", &["--gaze", "-0.25,0.5"])["gaze"],
+        serde_json::json!([-0.25, 0.5])
+    );
     let wide = value(at("b.png", &["--display", "1.2x0.5"]), "pixels_per_degree");
     let narrow = value(at("b.png", &["--display", "20"]), "pixels_per_degree");
     assert!(wide < narrow);

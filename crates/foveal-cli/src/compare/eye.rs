@@ -31,6 +31,7 @@ pub(super) struct EyeArgs {
 
     /// Gaze as fractions of the picture from its top left corner [default: 0.5,0.5]
     #[arg(long, value_name = "X,Y", value_parser = values::vec2, help_heading = "Eye")]
+    #[arg(allow_hyphen_values = true)]
     gaze: Option<[f32; 2]>,
 
     /// Frames per second of a video, which is a folder, 5 to 1000 [default: 30]

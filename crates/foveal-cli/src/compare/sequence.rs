@@ -100,12 +100,17 @@ fn frames(folder: &Path) -> anyhow::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in folder.read_dir().with_context(cannot_read)? {
         let name = entry.with_context(cannot_read)?.file_name();
-        if let Some(name) = name.to_str()
-            && Path::new(name)
-                .extension()
-                .is_some_and(|e| e.eq_ignore_ascii_case("png"))
-        {
-            names.push(name.to_owned());
+        let ending = Path::new(&name).extension();
+        if ending.is_none_or(|ending| !ending.eq_ignore_ascii_case("png")) {
+            continue;
+        }
+        // A frame that is passed over would be a shorter video.
+        match name.into_string() {
+            Ok(name) => names.push(name),
+            Err(name) => bail!(
+                "the name of the frame '{}' is not UTF-8",
+                folder.join(name).display()
+            ),
         }
     }
     names.sort_by(|a, b| parts(a).cmp(&parts(b)).then_with(|| a.cmp(b)));
@@ -176,6 +181,14 @@ mod tests {
             std::fs::write(folder.path().join(name), "").expect("a file");
         }
         assert_eq!(frames(folder.path()).expect("names"), expected);
+        #[cfg(target_os = "linux")]
+        {
+            use std::os::unix::ffi::OsStrExt;
+            let other = std::ffi::OsStr::from_bytes(b"f_3\xff.png");
+            std::fs::write(folder.path().join(other), "").expect("a file");
+            let error = frames(folder.path()).expect_err("no name").to_string();
+            assert!(error.contains("f_3"), "{error}");
+        }
         // Numbers that no integer holds.
         let long = "9".repeat(60);
         assert!(parts(&format!("{long}8")) < parts(&format!("{long}9")));
