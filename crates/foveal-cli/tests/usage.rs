@@ -97,6 +97,8 @@ fn words_that_contradict_each_other_are_usage_errors() {
         ("bench diff a.json b.json --page ./b.json", "is compared"),
         ("bench all - --report r", "standard input"),
         ("cull --depth a.png --overlay ./a.png", "same file"),
+        ("cull --up 0,0,1", "--eye"),
+        ("cull --eye 1,2,3 --target 0,0,0 --up 0,0,0", "--up"),
         ("cull --depth a.png --json ./a.png", "same file"),
     ];
     let folder = folder();

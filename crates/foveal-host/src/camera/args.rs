@@ -53,10 +53,17 @@ pub struct CameraArgs {
     pub(super) path: Option<String>,
 }
 
-/// Refuses a place to look at where the eye itself is.
-pub(crate) fn check_direction(eye: Option<Vec3>, target: Option<Vec3>) -> anyhow::Result<()> {
+/// Refuses a place to look at where the eye itself is, and no direction that is up.
+pub(crate) fn check_direction(
+    eye: Option<Vec3>,
+    target: Option<Vec3>,
+    up: Option<Vec3>,
+) -> anyhow::Result<()> {
     if eye.is_some() && eye == target {
         return usage("--eye and --target are the same point: there is no direction to look in");
+    }
+    if eye.is_some() && up == Some(Vec3::ZERO) {
+        return usage("--up is 0,0,0: there is no direction that is up");
     }
     Ok(())
 }
@@ -64,11 +71,7 @@ pub(crate) fn check_direction(eye: Option<Vec3>, target: Option<Vec3>) -> anyhow
 impl CameraArgs {
     /// Finds what clap cannot: contradictions between the values of several arguments.
     pub fn check(&self) -> anyhow::Result<()> {
-        check_direction(self.eye, self.target)?;
-        if self.eye.is_some() && self.up == Some(Vec3::ZERO) {
-            return usage("--up is 0,0,0: there is no direction that is up");
-        }
-        Ok(())
+        check_direction(self.eye, self.target, self.up)
     }
 
     /// The same along a path; one that is asked for already stays. Where the scene has a path of

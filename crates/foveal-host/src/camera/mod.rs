@@ -9,3 +9,4 @@ pub use args::CameraArgs;
 pub(crate) use args::check_direction;
 pub use path::CameraPath;
 pub use viewpoint::Viewpoint;
+pub(crate) use viewpoint::of_every_scene;

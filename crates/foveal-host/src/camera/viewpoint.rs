@@ -183,16 +183,9 @@ fn by_name(name: &str, scene: &Scene) -> anyhow::Result<Kind> {
     {
         return Ok(Kind::OfScene(index));
     }
-    match name {
-        "overview" => Ok(Kind::Still(scene.overview_camera())),
-        "inside" => match inside_camera(scene) {
-            Some(camera) => Ok(Kind::Still(camera)),
-            None => bail!(
-                "the scene '{}' has no inside: no place in it is walled in",
-                scene.name
-            ),
-        },
-        _ => {
+    match of_every_scene(name, scene)? {
+        Some(camera) => Ok(Kind::Still(camera)),
+        None => {
             let names: Vec<String> = scene
                 .cameras
                 .iter()
@@ -208,6 +201,21 @@ fn by_name(name: &str, scene: &Scene) -> anyhow::Result<Kind> {
                 scene.name
             )
         }
+    }
+}
+
+/// A camera that a scene has without naming it: `overview`, and `inside` where some place is walled in.
+pub(crate) fn of_every_scene(name: &str, scene: &Scene) -> anyhow::Result<Option<Camera>> {
+    match name {
+        "overview" => Ok(Some(scene.overview_camera())),
+        "inside" => match inside_camera(scene) {
+            Some(camera) => Ok(Some(camera)),
+            None => bail!(
+                "the scene '{}' has no inside: no place in it is walled in",
+                scene.name
+            ),
+        },
+        _ => Ok(None),
     }
 }
 

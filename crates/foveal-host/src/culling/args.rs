@@ -59,8 +59,9 @@ pub struct CullingArgs {
 /// Where the scene is seen from.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct ViewArgs {
-    /// Camera of the scene, by name or by number from 0, or `overview` [default: all of the scene's
-    /// cameras]
+    /// Camera of the scene, by name or by number from 0; `overview`: the whole scene from outside;
+    /// `inside`: the longest view within it [default: all of the scene's cameras; without cameras
+    /// `overview`]
     #[arg(long, help_heading = "Camera", value_name = "NAME", conflicts_with_all = ["eye", "target", "cameras"])]
     pub(super) camera: Option<String>,
 
@@ -73,6 +74,11 @@ pub struct ViewArgs {
     #[arg(long, help_heading = "Camera", value_name = "X,Y,Z", value_parser = values::vec3)]
     #[arg(allow_hyphen_values = true, requires = "eye")]
     pub(super) target: Option<Vec3>,
+
+    /// Direction that is up in the picture [default: 0,1,0]
+    #[arg(long, help_heading = "Camera", value_name = "X,Y,Z", value_parser = values::vec3)]
+    #[arg(allow_hyphen_values = true, requires = "eye")]
+    pub(super) up: Option<Vec3>,
 
     /// Vertical field of view in degrees [default: the camera's own, else 60]
     #[arg(long, help_heading = "Camera", value_name = "DEG", value_parser = values::fov_deg)]
@@ -94,6 +100,6 @@ impl ViewArgs {
 
     /// Finds what clap cannot: contradictions between the values of several arguments.
     pub fn check(&self) -> anyhow::Result<()> {
-        check_direction(self.eye, self.target)
+        check_direction(self.eye, self.target, self.up)
     }
 }

@@ -8,6 +8,7 @@ use glam::{DAffine3, DMat3, Vec3};
 use super::args::ViewArgs;
 use super::camera_file::{self, Defaults};
 use super::eye::NamedEye;
+use crate::camera::of_every_scene;
 
 const DEFAULT_FOV_DEG: f32 = 60.0;
 
@@ -19,7 +20,8 @@ impl ViewArgs {
         }
         let mut cameras = if let (Some(eye), Some(target)) = (self.eye, self.target) {
             let fov_y_deg = self.fov.unwrap_or(DEFAULT_FOV_DEG);
-            let mut camera = Camera::look_at(eye, target, Vec3::Y, fov_y_deg.to_radians());
+            let up = self.up.unwrap_or(Vec3::Y);
+            let mut camera = Camera::look_at(eye, target, up, fov_y_deg.to_radians());
             if let SceneProjection::Perspective { near_m, .. } = &mut camera.projection {
                 *near_m = self::near_m(scene);
             }
@@ -67,9 +69,11 @@ fn by_name(name: &str, scene: &Scene) -> anyhow::Result<Camera> {
         .iter()
         .find(|c| c.name == name)
         .or_else(|| name.parse().ok().and_then(|n: usize| scene.cameras.get(n)));
-    match found {
-        Some(camera) => Ok(camera.clone()),
-        None if name == "overview" => Ok(scene.overview_camera()),
+    if let Some(camera) = found {
+        return Ok(camera.clone());
+    }
+    match of_every_scene(name, scene)? {
+        Some(camera) => Ok(camera),
         None => {
             let names: Vec<String> = scene
                 .cameras
@@ -133,6 +137,8 @@ pub fn named_eye(camera: &Camera, aspect: f64) -> NamedEye {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::camera::{CameraArgs, Viewpoint};
+    use clap::Parser;
     use foveal_generate as generate;
     use glam::DVec3;
 
@@ -143,6 +149,47 @@ mod tests {
         assert!((DVec3::from(eye.position()) - DVec3::new(1.0, 2.0, 3.0)).length() < 1e-6);
         let forward = -DVec3::from(eye.world_from_eye.z_axis);
         assert!((forward - DVec3::new(-1.0, -2.0, -3.0).normalize()).length() < 1e-6);
+    }
+
+    #[test]
+    fn culling_sees_a_scene_from_where_pictures_show_it() {
+        #[derive(Parser)]
+        struct Line {
+            #[command(flatten)]
+            views: ViewArgs,
+        }
+        #[derive(Parser)]
+        struct Drawn {
+            #[command(flatten)]
+            camera: CameraArgs,
+        }
+        let scene = generate::by_name("demo:1000").unwrap();
+        for words in [
+            "foveal --camera inside",
+            "foveal --camera overview",
+            "foveal --camera 0",
+            "foveal --eye 1,2,3 --target -4,0,5 --up 1,0,0.5",
+        ] {
+            let words = words.split(' ');
+            let culled = Line::try_parse_from(words.clone()).unwrap().views;
+            let drawn = Drawn::try_parse_from(words.clone()).unwrap().camera;
+            let eyes = culled.choose(&scene, 1.5).unwrap();
+            let camera = Viewpoint::choose(&drawn, &scene, "demo:1000").unwrap();
+            let expected = named_eye(&camera.at(&scene, 0.0), 1.5).eye;
+            assert_eq!(eyes.len(), 1);
+            assert_eq!(
+                eyes[0].eye.world_from_eye, expected.world_from_eye,
+                "{words:?}"
+            );
+            assert_eq!(eyes[0].eye.projection, expected.projection, "{words:?}");
+        }
+        // No place in an empty scene is walled in.
+        let args = ViewArgs {
+            camera: Some("inside".to_owned()),
+            ..ViewArgs::default()
+        };
+        let error = args.choose(&Scene::default(), 1.5).unwrap_err();
+        assert!(error.to_string().contains("no inside"), "{error}");
     }
 
     #[test]
