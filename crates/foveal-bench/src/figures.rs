@@ -21,11 +21,21 @@ pub(super) struct FigureArgs {
     json: Option<PathBuf>,
 }
 
-/// Fails where figures cannot be written to `file`, or would replace one of `scenes`.
+/// Fails where figures cannot be written to `file`, or would replace a scene: one of `scenes`, or one that
+/// was meant to be measured and not to be written, as after a `--json` that stands before it.
 pub(super) fn check_figures(file: &Path, scenes: &[String]) -> anyhow::Result<()> {
     let replaces = |scene: &String| scene_source::is_replaced_by(scene, file);
     if scenes.iter().any(replaces) {
         return usage("--json names the scene's own file");
+    }
+    if file
+        .extension()
+        .is_none_or(|ending| !ending.eq_ignore_ascii_case("json"))
+    {
+        return usage(format!(
+            "--json writes to '{}', which must end in .json; a scene comes before --json",
+            file.display()
+        ));
     }
     atomic_file::check_writable(file)
 }
