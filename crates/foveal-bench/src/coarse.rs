@@ -79,7 +79,7 @@ pub struct Args {
     sweep: bool,
 
     /// Measured rounds, after one that warms up; below 10 the ratio has no interval
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pairs: u32,
 }
 
@@ -253,7 +253,7 @@ fn measure(
         }
     }
     let count = sides.len() + 1;
-    for round in 0..u64::from(args.pairs.max(1)) {
+    for round in 0..u64::from(args.pairs) {
         for number in turn(round, count) {
             match number.checked_sub(1) {
                 None => full.draw()?,

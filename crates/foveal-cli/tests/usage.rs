@@ -32,6 +32,7 @@ fn wrong_words_are_usage_errors() {
         "compare a.png",
         "compare a.png b.png --max-flip -1",
         "compare a.png b.png --max-flip nan",
+        "bench coarse cornell --pairs 0",
         "adapters now",
         "scene",
     ];

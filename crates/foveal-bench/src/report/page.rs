@@ -40,8 +40,8 @@ fn head(f: &Figures<'_>) -> Markup {
             (f.text("/machine/system")) "; " (f.text("/adapter/name")) " (" (f.text("/adapter/backend")) ", "
             (f.text("/adapter/driver")) "). Foveal " (f.text("/program_version"))
             ". In the sections after the verdict figures are medians of " (f.figure("/passes", 1.0, 0))
-            " passes; small figures are the passes' range. The sources' figures come from other machines: compare \
-             ratios, not times."
+            " passes (one where the displays are compared); small figures are the passes' range. The sources' figures \
+             come from other machines: compare ratios, not times."
         }
     }
 }
