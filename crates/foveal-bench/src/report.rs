@@ -96,6 +96,11 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     for name in ["report.html", "report.json", "report.csv"] {
         atomic_file::check_writable(&args.report.join(name))?;
     }
+    if let Some(folder) = &args.markdown {
+        for name in markdown::names() {
+            atomic_file::check_writable(&folder.join(name))?;
+        }
+    }
     let size = args
         .size
         .unwrap_or(if args.quick { (480, 270) } else { (1280, 720) });

@@ -164,6 +164,24 @@ fn a_report_of_a_scene_that_is_not_there_takes_no_others_place() {
     );
 }
 
+#[test]
+fn tables_that_cannot_be_written_are_named_before_anything_is_measured() {
+    let folder = folder();
+    fs::create_dir_all(folder.path().join("tables/culling.md")).unwrap();
+    let words = [
+        "bench",
+        "all",
+        "cornell",
+        "--quick",
+        "--report",
+        "r",
+        "--markdown",
+        "tables",
+    ];
+    fail(folder.path(), &words, &["culling.md"]);
+    assert!(common::names(&folder.path().join("r")).is_empty());
+}
+
 /// Loads the page in a browser: its script has run, and the console holds no error.
 fn opens_in_chromium(page: &Path) {
     let names = ["chromium", "chromium-browser", "google-chrome"];

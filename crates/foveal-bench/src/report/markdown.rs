@@ -7,17 +7,29 @@ use super::bench::{Bench, Column};
 use super::html::rounded;
 use super::plan::BENCHES;
 
+/// The index.
+const INDEX: &str = "README.md";
+
+fn file_of(bench: &Bench) -> String {
+    format!("{}.md", bench.name)
+}
+
+/// Names of all files that may be written.
+pub(super) fn names() -> impl Iterator<Item = String> {
+    BENCHES.iter().map(file_of).chain([INDEX.to_owned()])
+}
+
 /// File names and their texts.
 pub(super) fn of(report: &Value) -> Vec<(String, String)> {
     let mut index = format!(
-        "# Benchmarks\n{} Each page says which scenes it measured.\n\nMade by `./run benchmarks`; nothing here is written by hand.\n\n| bench | |\n|---|---|\n",
+        "# Benchmarks\n{} Each page says which scenes it measured.\n\nMade by `foveal bench all --markdown`; nothing here is written by hand.\n\n| bench | |\n|---|---|\n",
         measured_on(report)
     );
     let mut files = Vec::new();
     for (number, bench) in BENCHES.iter().enumerate() {
         let found = &report["benches"][number];
         if found["status"] == "measured" {
-            let name = format!("{}.md", bench.name);
+            let name = file_of(bench);
             index += &format!("| [{}]({name}) | {} |\n", bench.title, cell(bench.about));
             files.push((name, page(report, bench, found)));
         } else {
@@ -30,7 +42,7 @@ pub(super) fn of(report: &Value) -> Vec<(String, String)> {
             );
         }
     }
-    files.push(("README.md".to_owned(), index));
+    files.push((INDEX.to_owned(), index));
     files
 }
 
