@@ -120,8 +120,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         .filter(|(_, row)| row.decision == Decision::Adopt)
         .map(|((candidate, _), row)| (*candidate, row.ratio.unwrap_or(1.0)))
         .collect();
-    if adopted.len() > 1 {
-        let settings = together(&plain, &adopted)?;
+    if let Some(settings) = together(&plain, &adopted)? {
         let mut measured = measure(&subject, &plain, &[&settings], args.rounds)?;
         if let Some(measured) = measured.pop() {
             let name = (TOGETHER, Aim::Faster);

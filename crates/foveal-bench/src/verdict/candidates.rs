@@ -124,19 +124,21 @@ pub(super) fn candidates_of(
     Ok(candidates)
 }
 
-/// The settings of these candidates as one: of each family the one with the largest ratio.
+/// The settings of these candidates as one: of each family the one with the largest ratio. `None`
+/// where that leaves fewer than two.
 pub(super) fn together(
     plain: &Settings,
     adopted: &[(&Candidate, f64)],
-) -> anyhow::Result<Settings> {
-    let mut settings = plain.clone();
+) -> anyhow::Result<Option<Settings>> {
+    let (mut settings, mut count) = (plain.clone(), 0);
     for (candidate, ratio) in adopted {
         let mut family = adopted.iter().filter(|(c, _)| c.family == candidate.family);
         if family.all(|(_, other)| other <= ratio) {
             settings = candidate.settings(&settings)?;
+            count += 1;
         }
     }
-    Ok(settings)
+    Ok((count > 1).then_some(settings))
 }
 
 #[cfg(test)]
@@ -187,11 +189,18 @@ mod tests {
             (named("Coarse shading over"), 3.0),
             (named("Coarse shading around"), 2.0),
         ];
-        let settings = together(&Settings::default(), &adopted).unwrap();
+        let of = |adopted: &[(&Candidate, f64)]| {
+            let settings = together(&Settings::default(), adopted);
+            settings.unwrap()
+        };
+        let settings = of(&adopted).unwrap();
         assert_eq!(settings.culling.mode, Culling::Frustum);
         assert_eq!(settings.shading.mode, Shading::Coarse);
         assert_eq!(settings.geometry.path, Geometry::Visibility);
         let checked = settings.validate(&wgpu::Limits::default());
         assert!(checked.is_ok(), "{checked:?}");
+        // One of a family is what was measured already.
+        assert_eq!(of(&adopted[1..]), None);
+        assert_eq!(of(&[]), None);
     }
 }
