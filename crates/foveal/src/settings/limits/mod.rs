@@ -182,18 +182,20 @@ impl Settings {
         eye::validate(self)?;
         variable::validate(self)?;
         stereo::validate(self, limits)?;
-        self.check_lists(limits)?;
+        let drawn = self.drawn();
+        drawn.check_lists(limits)?;
         if self.shading.mode == Shading::Coarse && self.coarse.composite == Composite::Smooth {
-            crate::composite::check_limits(self, limits)?;
+            crate::composite::check_limits(&drawn, limits)?;
         }
-        crate::antialias::validate(self, limits)
+        crate::antialias::validate(&drawn, limits)
     }
 
-    /// Whether a buffer holds a number for each pixel, where pixels are listed.
+    /// Whether a buffer holds a number for each pixel, where pixels are listed, at the size at which
+    /// the frame is drawn.
     fn check_lists(&self, limits: &wgpu::Limits) -> Result<(), Error> {
         let lists_pixels =
             self.shading.mode != Shading::Full || self.geometry.path == Geometry::Visibility;
-        let (width, height) = EyeLayout::of(&self.drawn()).target_size();
+        let (width, height) = EyeLayout::of(self).target_size();
         let pixels = u64::from(width) * u64::from(height);
         let most = limits.max_storage_buffer_binding_size / 4;
         if lists_pixels && pixels > most && !crate::gpu::is_reduced(limits) {
@@ -208,5 +210,58 @@ impl Settings {
             });
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Antialiasing, Output, Stereo};
+
+    #[test]
+    fn targets_must_fit_at_the_size_at_which_the_frame_is_drawn() {
+        let limits = wgpu::Limits::default();
+        assert_eq!(limits.max_texture_dimension_2d, 8192);
+        let changes: [fn(&mut Settings); 4] = [
+            |s| {
+                s.picture.width = 8192;
+                s.antialiasing.mode = Antialiasing::Msaa;
+            },
+            |s| {
+                s.picture.width = 4096;
+                s.stereo.mode = Stereo::TwoPass;
+                s.stereo.output = Output::SideBySide;
+                s.antialiasing.mode = Antialiasing::Ssaa;
+            },
+            |s| {
+                s.picture.width = 8192;
+                s.stereo.mode = Stereo::TwoPass;
+            },
+            |s| {
+                (s.picture.width, s.picture.height) = (4096, 3584);
+                s.shading.mode = Shading::Coarse;
+                s.coarse.composite = Composite::Smooth;
+            },
+        ];
+        for (number, change) in changes.into_iter().enumerate() {
+            let at = |scale| {
+                let settings = Settings::default().with(change);
+                settings.with(|s| s.picture.render_scale = scale)
+            };
+            assert!(at(1.0).validate(&limits).is_err(), "case {number}");
+            let half = at(0.5).validate(&limits);
+            half.unwrap_or_else(|cause| panic!("case {number}: {cause}"));
+        }
+        // What is shown must fit too.
+        let shown = Settings::default().with(|s| {
+            s.picture.width = 4097;
+            s.picture.render_scale = 0.5;
+            s.stereo.mode = Stereo::TwoPass;
+            s.stereo.output = Output::SideBySide;
+        });
+        let cause = shown
+            .validate(&limits)
+            .expect_err("8194 pixels side by side");
+        assert!(cause.to_string().contains("side by side"), "{cause}");
     }
 }

@@ -108,7 +108,7 @@ pub(super) fn validate(s: &Settings, limits: &wgpu::Limits) -> Result<(), Error>
         return wrong("gaze-shift", format!("{x},{y}"), expected);
     }
     crate::stereo::check_lens(&s.stereo.lens.profile())?;
-    let layout = EyeLayout::of(s);
+    let layout = EyeLayout::of(&s.drawn());
     let width = u64::from(layout.target_size().0).max(u64::from(s.picture_size().0));
     if width > u64::from(limits.max_texture_dimension_2d) {
         return Err(Error::Limit {
