@@ -49,8 +49,8 @@ pub struct Frame<'a> {
     /// Where the frame is seen from.
     pub camera: &'a Camera,
     /// Where the frame before it was seen from, for motion vectors and for what is kept from frame
-    /// to frame, which is given up where this is not the camera that was drawn last; `None`: from
-    /// the same place.
+    /// to frame, which is given up where this is not the camera that was drawn last; `None`, or with
+    /// two eyes an orthographic camera: from the same place.
     pub previous_camera: Option<&'a Camera>,
 }
 

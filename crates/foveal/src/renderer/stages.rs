@@ -16,15 +16,21 @@ use crate::shadow::ShadowStage;
 use crate::stereo::{EyeLayout, LensFit, Submission, Trials, eyes};
 use crate::targets::Targets;
 use crate::{Error, Settings, Shading};
+use foveal_scene::{Camera, Projection};
 
 impl Seen {
     /// # Errors
     /// [`Error::Setting`] where a camera or a lens makes no sense.
     pub(super) fn new(settings: &Settings, frame: &Frame<'_>) -> Result<Self, Error> {
         let eyes_now = eyes(settings, frame.camera)?;
+        let is_parallel = |camera: &&Camera| {
+            let parallel = matches!(camera.projection, Projection::Orthographic { .. });
+            settings.is_stereo() && parallel
+        };
         Ok(Self {
             eyes: eyes_now,
-            eyes_before: match frame.previous_camera {
+            // Two eyes have not seen a frame in parallel projection: one eye has.
+            eyes_before: match frame.previous_camera.filter(|before| !is_parallel(before)) {
                 Some(before) => eyes(settings, before)?,
                 None => eyes_now,
             },

@@ -5,8 +5,8 @@ use glam::Vec3;
 
 use super::{WAYS, shape, two_eyes};
 use crate::stereo::EyeLayout;
-use crate::testing::{rendered, texels};
-use crate::{Error, Frame, Renderer, Settings};
+use crate::testing::{picture, rendered, texels};
+use crate::{DebugView, Error, Frame, Renderer, Settings};
 
 /// A disc of 128 corners in front of a camera at the origin, off its axis.
 fn disc(distance: f32) -> Scene {
@@ -128,4 +128,22 @@ fn cameras_that_two_eyes_cannot_use_are_errors() {
             }
         }
     });
+}
+
+#[test]
+fn two_eyes_may_follow_a_frame_in_parallel_projection() {
+    let scene = disc(1.0);
+    let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0);
+    let mut before = camera.clone();
+    before.projection = Projection::Orthographic {
+        height_m: 1.0,
+        near_m: 0.1,
+        far_m: 10.0,
+    };
+    let settings = two_eyes(40, 30).with(|s| s.picture.view = DebugView::Motion);
+    let mut renderer = rendered(&scene, &camera, &settings);
+    let resting = picture(&renderer);
+    let frame = Frame::new(&camera).with_previous(&before);
+    pollster::block_on(renderer.render(&frame)).expect("this frame's camera is a perspective one");
+    assert!(picture(&renderer) == resting);
 }
