@@ -7,16 +7,18 @@ use crate::settings::{
     Shadows,
 };
 
-/// Stages that are missing on such devices.
-const MISSING_STAGES: [&str; 4] = [
+/// Stages that are missing on such devices, with what only they ask for.
+const MISSING_STAGES: [&str; 6] = [
     "Anti-aliasing",
     "Shading",
+    "Eye",
     "Coarse shading",
+    "Work per sample",
     "Variable shading",
 ];
 
 /// Single settings that are missing there.
-const MISSING_KEYS: [&str; 14] = [
+const MISSING_KEYS: [&str; 16] = [
     "view",
     "geometry",
     "material-dispatch",
@@ -31,6 +33,8 @@ const MISSING_KEYS: [&str; 14] = [
     "sun-angle",
     "ambient-occlusion",
     "ambient-occlusion-radius",
+    "eye-clipping",
+    "gaze-shift",
 ];
 
 impl Setting {
@@ -83,6 +87,28 @@ mod tests {
         }
         for key in MISSING_KEYS {
             assert!(Settings::ALL.iter().any(|s| s.key == key), "{key}");
+        }
+    }
+
+    #[test]
+    fn what_only_shading_rates_ask_for_is_missing_as_they_are() {
+        let offered: Vec<&str> = (Settings::ALL.iter())
+            .filter(|setting| setting.is_in_reduced_set())
+            .map(|setting| setting.key)
+            .collect();
+        for key in [
+            "display",
+            "quality",
+            "gaze",
+            "gaze-shift",
+            "rate-stage",
+            "force-rate",
+            "eye-clipping",
+        ] {
+            assert!(!offered.contains(&key), "{key}");
+        }
+        for key in ["stereo", "ipd", "show", "lens", "culling", "exposure"] {
+            assert!(offered.contains(&key), "{key}");
         }
     }
 
