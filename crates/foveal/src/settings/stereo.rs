@@ -280,7 +280,8 @@ fn numbers(text: &str) -> Option<Vec<f32>> {
     text.split(',').map(|n| n.trim().parse().ok()).collect()
 }
 
-pub(super) const TANGENTS: &str = "eight numbers between -100 and 100: left < right and bottom < top of the left eye, then of the right";
+pub(super) const TANGENTS: &str = "eight numbers between -100 and 100: left < right and bottom < top of the left \
+                                   eye, then of the right, by 0.001 and more";
 
 #[cfg(test)]
 mod tests {

@@ -8,9 +8,8 @@ use super::Eye;
 use crate::settings::LensProfile;
 use crate::{Error, Settings};
 
-/// Screen radius up to which every profile must be sound, unless it shows radius 2 (63 degrees)
-/// before that.
-const FARTHEST_SCREEN: f32 = 2.0;
+/// Seen radius up to which every profile must be sound: 45 degrees. Beyond, a frustum decides.
+const LEAST_SEEN: f32 = 1.0;
 
 impl LensProfile {
     /// Where green light of a screen radius is seen.
@@ -78,18 +77,18 @@ pub(crate) fn check_lens(lens: &LensProfile) -> Result<(), Error> {
     let colours = [lens.red, lens.blue]
         .iter()
         .all(|c| (0.5..=2.0).contains(&c[0]) && c[1].abs() <= 0.5);
-    let reach = if finite {
-        lens.screen(2.0).unwrap_or(FARTHEST_SCREEN)
-    } else {
-        0.0
+    let grows = || {
+        let reach = lens.screen(LEAST_SEEN);
+        reach.is_some_and(|reach| lens.is_sound_up_to(reach))
     };
-    if finite && colours && lens.is_sound_up_to(reach) && lens.seen(reach) >= 1.0 {
+    if finite && colours && grows() {
         return Ok(());
     }
     Err(Error::Setting {
         name: "lens",
         value: format!("{:?}", numbers.collect::<Vec<_>>()),
-        expected: "finite, with colour factors from 0.5 to 2 and radii that grow at least up to 45 degrees",
+        expected: "numbers up to 1000, with colour factors c0 from 0.5 to 2 and c1 from -0.5 to 0.5, and radii that \
+                   grow at least up to 45 degrees",
     })
 }
 

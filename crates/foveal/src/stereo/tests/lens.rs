@@ -195,6 +195,32 @@ fn the_rate_map_follows_the_lens() {
 }
 
 #[test]
+fn a_lens_that_shows_45_degrees_shows_each_frustum_within_its_reach() {
+    // It shows 50.6 degrees at most, from where on it folds.
+    let with = |lens: &str, half: f32| {
+        let frustum = format!("-{half},{half},-{half},{half}");
+        headset(lens).with(|s| {
+            s.stereo.frusta = format!("{frustum},{frustum}")
+                .parse()
+                .expect("it can be read");
+        })
+    };
+    let limits = wgpu::Limits::default();
+    for (lens, half, is_shown) in [("-0.1,0,0", 0.75, true), ("-0.1,0,0", 1.15, false)] {
+        let settings = with(lens, half);
+        settings
+            .validate(&limits)
+            .expect("it grows up to 45 degrees");
+        let eyes = eyes(&settings, &camera()).expect("sound eyes");
+        assert_eq!(LensFit::of(&settings, &eyes).is_ok(), is_shown, "{half}");
+    }
+    // 44.4 degrees at most.
+    let error = with("-0.1543,0,0", 0.1).validate(&limits);
+    let error = error.expect_err("it folds before").to_string();
+    assert!(error.contains("45 degrees"), "{error}");
+}
+
+#[test]
 fn a_frustum_that_a_lens_cannot_show_is_an_error() {
     let settings = (headset("0,-0.02,0"))
         .with(|s| s.stereo.frusta = "-3,3,-3,3,-3,3,-3,3".parse().expect("it can be read"));
