@@ -29,6 +29,8 @@ pub struct ShownEyes {
     output: Output,
     eyes: [Eye; 2],
     lenses: Option<[LensFit; 2]>,
+    /// Where the right eye's picture begins. Of an odd width the left one has a column more.
+    cut: f32,
 }
 
 impl ShownEyes {
@@ -48,6 +50,13 @@ impl ShownEyes {
             output,
             eyes,
             lenses: LensFit::of(settings, &eyes)?,
+            cut: match output {
+                Output::SideBySideHalf => {
+                    let across = settings.picture.width.max(1);
+                    across.div_ceil(2) as f32 / across as f32
+                }
+                _ => 0.5,
+            },
         })
     }
 
@@ -78,8 +87,8 @@ impl ShownEyes {
         if self.count() == 1 {
             return (0, place);
         }
-        let eye = usize::from(x >= 0.5);
-        let half = [2.0 * x - eye as f32, y];
+        let eye = usize::from(x >= self.cut);
+        let half = [2.0 * (x - eye as f32 * self.cut), y];
         let Some(lenses) = &self.lenses else {
             return (eye, half);
         };
@@ -113,7 +122,7 @@ impl ShownEyes {
             };
             half = place_of(lenses[eye].screen, screen);
         }
-        Some([0.5 * (half[0] + eye as f32), half[1]])
+        Some([0.5 * half[0] + eye as f32 * self.cut, half[1]])
     }
 }
 

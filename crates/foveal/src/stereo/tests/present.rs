@@ -97,6 +97,16 @@ impl Pictures {
         .map(encoded)
     }
 
+    /// A pixel shows two columns of an eye's picture: its centre shows where they meet.
+    fn assert_seen_between(&self, x: u32, y: u32, (eye, first): (u32, i32)) {
+        let (width, height) = self.settings.picture_size();
+        let size = Vec2::new(width as f32, height as f32);
+        let shown = (Vec2::new(x as f32, y as f32) + 0.5) / size;
+        let (its, [across, _]) = self.places.seen(shown.to_array());
+        let off = across * size.x - (first + 1) as f32;
+        assert!(its == eye as usize && off.abs() < 0.01, "{x}: {its}, {off}");
+    }
+
     fn shown(&self, x: u32, y: u32) -> Vec3 {
         let (px, py) = (x as i32, y as i32);
         let (left, right) = (self.at(0, px, py), self.at(1, px, py));
@@ -111,6 +121,7 @@ impl Pictures {
                 let half = self.settings.picture.width.div_ceil(2);
                 let eye = u32::from(x >= half);
                 let first = 2 * (px - (eye * half) as i32);
+                self.assert_seen_between(x, y, (eye, first));
                 let [a, b] = [0, 1].map(|d| self.at(eye, first + d, py).map(linear));
                 ((a + b) * 0.5).map(encoded)
             }
