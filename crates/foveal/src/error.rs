@@ -50,7 +50,8 @@ pub enum Error {
         /// The texture's name.
         texture: String,
     },
-    /// An instance, material or mesh of a scene has an index of something that is not there.
+    /// An instance, material or mesh of a scene has an index of something that is not there, or a
+    /// texture or its own environment has other texels than its size says.
     #[error("the scene cannot be drawn: {cause}")]
     Scene {
         /// The place, its index, and how many there are.

@@ -15,7 +15,8 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Scene`] where an instance's mesh, material or object, a material's texture, or a
-    /// mesh's vertex is not there; [`Error::Limit`] where the scene exceeds the device's limits,
+    /// mesh's vertex is not there, and where a texture or the scene's own environment has other texels
+    /// than its size says; [`Error::Limit`] where the scene exceeds the device's limits,
     /// [`Error::NoTexels`], [`Error::OutOfMemory`]; the renderer keeps its old scene then.
     pub async fn set_scene(&mut self, scene: &Scene) -> Result<(), Error> {
         self.set_scene_within(scene, ArrayLimits::of(&self.gpu))

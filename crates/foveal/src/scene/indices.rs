@@ -1,5 +1,6 @@
 //! A scene's indices, which may come from a program's own code: each must name what the scene has,
-//! because all stages take its parts by them without asking again.
+//! because all stages take its parts by them without asking again. So are the texels of its own
+//! environment counted.
 
 use std::fmt::Display;
 
@@ -8,7 +9,8 @@ use foveal_scene::{Material, Mesh, Scene};
 use super::material_uniform::slots;
 use crate::Error;
 
-/// Refuses instances, materials and meshes that name what `scene` does not have.
+/// Refuses instances, materials and meshes that name what `scene` does not have, and an environment
+/// that lacks texels.
 ///
 /// # Errors
 /// [`Error::Scene`] for the first of them.
@@ -44,7 +46,24 @@ pub(super) fn check_indices(scene: &Scene) -> Result<(), Error> {
             return Err(missing(place, index, "the mesh", count, "vertices"));
         }
     }
-    Ok(())
+    check_image_light(scene)
+}
+
+/// Refuses an environment that has not the texels of six sides.
+fn check_image_light(scene: &Scene) -> Result<(), Error> {
+    let Some(light) = &scene.image_light else {
+        return Ok(());
+    };
+    let (side, texels) = (light.side, light.radiance.len());
+    let of_side = u64::from(side) * u64::from(side);
+    if side > 0 && texels.is_multiple_of(6) && texels as u64 / 6 == of_side {
+        return Ok(());
+    }
+    Err(Error::Scene {
+        cause: format!(
+            "image_light.radiance has {texels} texels; it must be six sides of {side} x {side}, and these not empty"
+        ),
+    })
 }
 
 fn missing(place: impl Display, index: u32, owner: &str, count: usize, kind: &str) -> Error {
@@ -82,8 +101,8 @@ fn beyond_vertices(mesh: &Mesh) -> Option<(String, u32)> {
 
 #[cfg(test)]
 mod tests {
-    use foveal_scene::{Sheen, TextureRef};
-    use glam::{Mat3, Vec3};
+    use foveal_scene::{ImageLight, Sheen, TextureRef};
+    use glam::{Mat3, Quat, Vec3};
     use pollster::block_on;
 
     use super::*;
@@ -163,6 +182,28 @@ mod tests {
             block_on(film.renderer.render(&Frame::new(&room.cameras[0]))).expect("drawn");
             assert!(picture(&film.renderer) == before, "{place}");
         }
+    }
+
+    /// Whatever environment is in force: settings may choose the scene's later.
+    #[test]
+    fn an_environment_that_lacks_texels_is_refused() {
+        let mut room = foveal_generate::cornell();
+        let mut film = Film::new(&room, &small(48, 32));
+        for (side, texels) in [(4, 95), (4, 97), (4, 0), (0, 0), (0, 6), (1 << 31, 6)] {
+            room.image_light = Some(ImageLight {
+                name: String::new(),
+                rotation: Quat::IDENTITY,
+                intensity: 1.0,
+                side,
+                radiance: vec![[1.0; 3]; texels].into(),
+                irradiance: [[0.0; 3]; 9],
+            });
+            let error = block_on(film.renderer.set_scene(&room)).expect_err("texels are missing");
+            assert!(matches!(error, Error::Scene { .. }), "{error}");
+            let named = format!("image_light.radiance has {texels} texels");
+            assert!(error.to_string().contains(&named), "{error}");
+        }
+        film.draw(&room.cameras[0]);
     }
 
     #[test]

@@ -110,7 +110,8 @@ impl SceneOnGpu {
     /// Uploads `scene` with these textures, of which its own may have lost their texels.
     ///
     /// # Errors
-    /// [`Error::Scene`] where an index names nothing; [`Error::Limit`], [`Error::NoTexels`].
+    /// [`Error::Scene`] where an index names nothing, or the environment lacks texels;
+    /// [`Error::Limit`], [`Error::NoTexels`].
     pub(crate) fn new(
         gpu: &Gpu,
         scene: &Scene,

@@ -60,6 +60,7 @@ impl Shape {
     /// Of `texture` without the levels that are larger than the device's limit, and how many those
     /// are. Without `blocks`, and where the rest is not of whole ones, it is one of texels.
     fn of(texture: &Texture, limit: u32, blocks: bool) -> Result<(Self, usize), Error> {
+        check_levels(texture)?;
         let side = |level: usize| texture.level_size(level);
         let fitting = (0..texture.levels.len()).find(|&l| side(l).0.max(side(l).1) <= limit);
         let Some(first) = fitting else {
@@ -122,6 +123,33 @@ impl Shape {
     }
 }
 
+/// Refuses levels that are not those of the texture's size.
+fn check_levels(texture: &Texture) -> Result<(), Error> {
+    let Texture { width, height, .. } = *texture;
+    let wrong = |what: String| {
+        let name = &texture.name;
+        Err(Error::Scene {
+            cause: format!("the texture '{name}' of {width} x {height} texels {what}"),
+        })
+    };
+    let most = width.max(height).max(1).ilog2() as usize + 1;
+    let levels = texture.levels.len();
+    if levels > most {
+        return wrong(format!("has {levels} levels, and there are {most} at most"));
+    }
+    for (number, level) in texture.levels.iter().enumerate() {
+        let (width, height) = texture.level_size(number);
+        let expected = texture.encoding.level_bytes(width, height);
+        if level.len() as u64 != expected {
+            let found = level.len();
+            return wrong(format!(
+                "has {found} bytes at level {number}, which takes {expected}"
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// Where a texture lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Place {
@@ -171,7 +199,8 @@ impl Textures {
     /// freed once it is on the device.
     ///
     /// # Errors
-    /// [`Error::Limit`] for a texture whose smallest level is larger than that,
+    /// [`Error::Scene`] for a texture whose levels are not those of its size,
+    /// [`Error::Limit`] for one whose smallest level is larger than that,
     /// [`Error::NoTexels`] for one without levels.
     pub(crate) fn new(
         gpu: &Gpu,
@@ -324,18 +353,55 @@ mod tests {
         }
     }
 
-    #[test]
-    fn levels_that_a_device_drops_may_leave_no_whole_blocks() {
+    fn of_blocks() -> Texture {
         let levels = [64, 16, 16, 16].map(|bytes| vec![0; bytes]);
-        let texture = Texture {
-            name: String::new(),
+        Texture {
+            name: "normals".to_owned(),
             width: 8,
             height: 8,
             color_space: ColorSpace::Linear,
             sampler: foveal_scene::Sampler::default(),
             encoding: Encoding::Bc5,
             levels: levels.to_vec(),
-        };
+        }
+    }
+
+    #[test]
+    fn levels_that_are_not_of_the_textures_size_are_refused_by_name() {
+        type Change = fn(&mut Texture);
+        let changes: [(Change, &str); 6] = [
+            (
+                |t| t.levels[0].truncate(63),
+                "63 bytes at level 0, which takes 64",
+            ),
+            (
+                |t| t.levels[3].push(0),
+                "17 bytes at level 3, which takes 16",
+            ),
+            (|t| t.width = 16, "64 bytes at level 0, which takes 128"),
+            (|t| t.encoding = Encoding::Rgba8, "level 0, which takes 256"),
+            (
+                |t| t.levels.resize(40, vec![0; 16]),
+                "40 levels, and there are 4 at most",
+            ),
+            (
+                |t| (t.width, t.height) = (0, 0),
+                "4 levels, and there are 1 at most",
+            ),
+        ];
+        for (change, says) in changes {
+            let mut texture = of_blocks();
+            change(&mut texture);
+            let error = Shape::of(&texture, 8192, true).expect_err(says);
+            assert!(matches!(error, Error::Scene { .. }), "{error}");
+            let text = error.to_string();
+            assert!(text.contains("'normals'") && text.contains(says), "{text}");
+        }
+    }
+
+    #[test]
+    fn levels_that_a_device_drops_may_leave_no_whole_blocks() {
+        let texture = of_blocks();
         for (limit, blocks, encoding) in [
             (8, true, Encoding::Bc5),
             (4, true, Encoding::Bc5),
