@@ -116,7 +116,9 @@ impl Renderer {
     /// which objects are visible, and the numbers of materials. Their textures and alpha modes, and
     /// what kinds of reflection they have, stay as [`Renderer::set_scene`] found them. The pose
     /// before it becomes the previous one, from which motion vectors are taken; a frame that follows
-    /// another without a new pose shows nothing in motion.
+    /// another without a new pose shows nothing in motion. What is kept from frame to frame is given
+    /// up where things had moved with the pose before and no frame has shown it: call this once a
+    /// frame, with the pose that it shows.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`]. Call it again then: until it succeeds, objects and lights have the
@@ -128,6 +130,10 @@ impl Renderer {
         self.mend().await?;
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene's pose");
         let change = self.scene.update_pose(&self.gpu, scene);
+        if change.skips {
+            // Motion leads to places that the last frame did not show.
+            self.stages.forget_light();
+        }
         let wants_places = self.stages.history().is_some();
         let shadows = self
             .stages

@@ -97,6 +97,9 @@ pub(crate) struct SceneOnGpu {
 pub(crate) struct PoseChange {
     /// Anything has moved, now or a pose before.
     pub(crate) moves: bool,
+    /// No frame has shown the pose before, with which things had moved: motion is not what it is since
+    /// the last frame.
+    pub(crate) skips: bool,
     /// Around each instance that casts shadows, now or before, and has moved, may have changed its
     /// shape or its holes, has appeared or disappeared: where it was and is.
     pub(crate) boxes: Vec<Aabb>,
@@ -204,6 +207,7 @@ impl SceneOnGpu {
 
     /// Takes over a new pose of the same scene; the pose so far becomes the previous one.
     pub(crate) fn update_pose(&mut self, gpu: &Gpu, scene: &Scene) -> PoseChange {
+        let skips = self.in_motion && !self.is_shown;
         let changes = self.materials.update(gpu, &scene.materials);
         let mut moves = self.geometry.deforms() || changes.iter().any(|c| c.is_other);
         let (mut boxes, mut places) = (Vec::new(), Vec::new());
@@ -256,6 +260,7 @@ impl SceneOnGpu {
         self.is_shown = false;
         PoseChange {
             moves,
+            skips,
             boxes,
             places,
             lights_before,
