@@ -1,5 +1,6 @@
 //! The renderer as a guest on the host's device.
 
+use foveal::glam::{Mat4, Vec3, Vec4};
 use foveal::{
     Antialiasing, Error, Frame, Gpu, Renderer, RendererOptions, Settings, Shading, Stereo, Target,
 };
@@ -290,8 +291,26 @@ fn cameras_that_make_no_sense_are_refused() {
         renderer.set_scene(&scene).await.expect("uploaded");
         let sound = camera(4.0, 0.0);
         renderer.render(&Frame::new(&sound)).await.expect("drawn");
+        let mut rounded = sound.clone();
+        rounded.world_from_view = sound.world_from_view.inverse().inverse();
+        renderer.render(&Frame::new(&rounded)).await.expect("drawn");
         let wrong = [0.0, -1.0, f32::NAN, f32::INFINITY].map(|height_m| camera(height_m, 0.0));
-        for camera in [&wrong[..], &[camera(4.0, f32::NAN)]].concat() {
+        // Lights and culling measure in view space: a scaled one is not the world's.
+        let shear = Mat4::from_cols(Vec4::X, Vec4::new(0.1, 1.0, 0.0, 0.0), Vec4::Z, Vec4::W);
+        let placed = [
+            Mat4::from_scale(Vec3::splat(2.0)),
+            Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)),
+            shear,
+            shear.transpose(),
+            Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, 1.0, 0.1), Vec4::W),
+            Mat4::ZERO,
+        ]
+        .map(|by| {
+            let mut camera = camera(4.0, 0.0);
+            camera.world_from_view *= by;
+            camera
+        });
+        for camera in [&wrong[..], &placed, &[camera(4.0, f32::NAN)]].concat() {
             let error = renderer.render(&Frame::new(&camera)).await.unwrap_err();
             assert!(
                 matches!(error, Error::Setting { name: "camera", .. }),

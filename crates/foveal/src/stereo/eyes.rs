@@ -1,7 +1,7 @@
 //! Where the eyes stand and what they see.
 
 use foveal_scene::{Camera, Projection};
-use glam::{Mat4, Vec3};
+use glam::{Mat3, Mat4, Vec3, Vec4};
 
 use super::EyeLayout;
 use crate::EyeFrusta;
@@ -98,12 +98,12 @@ fn check(settings: &Settings, camera: &Camera) -> Result<(), Error> {
         })
     };
     let place = camera.world_from_view;
-    if !(place.is_finite() && place.inverse().is_finite()) {
+    if !is_rigid(&place) {
         let value = format!("placed by {place}");
         return wrong(
             "camera",
             value,
-            "placed by a finite matrix that has an inverse",
+            "placed by a rotation and a translation alone, all numbers finite",
         );
     }
     match camera.projection {
@@ -137,6 +137,19 @@ fn check(settings: &Settings, camera: &Camera) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// By how much a rotation that was multiplied or inverted often may be off.
+const ROUNDED: f32 = 1e-3;
+
+/// Whether a matrix is a rotation and a translation: lights are assigned to parts of the view, and
+/// objects are culled, by distances that are the same in view space and in the world.
+fn is_rigid(place: &Mat4) -> bool {
+    let turn = Mat3::from_mat4(*place);
+    let off = turn.transpose() * turn - Mat3::IDENTITY;
+    let is_turn = off.to_cols_array().iter().all(|v| v.abs() < ROUNDED) && turn.determinant() > 0.0;
+    let is_affine = (place.row(3) - Vec4::W).abs().max_element() < ROUNDED;
+    place.is_finite() && is_turn && is_affine
 }
 
 /// Whole pixels by which each eye's picture is moved in the grid of clusters, so that what is far
