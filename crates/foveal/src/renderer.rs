@@ -218,10 +218,10 @@ impl Renderer {
         &self.settings
     }
 
-    /// Takes over other settings. A change of gaze alone makes nothing anew and keeps the light
-    /// history, so that a host with an eye tracker calls this before each frame. A change of the
-    /// environment's intensity and rotation, and of the radius of ambient occlusion, with or without
-    /// one of gaze, gives up the light history alone. A change of size alone rebuilds the targets
+    /// Takes over other settings. A change of gaze, and of the width of points and lines, makes nothing
+    /// anew and keeps the light history, so that a host with an eye tracker calls this before each
+    /// frame. A change of the environment's intensity and rotation, and of the radius of ambient
+    /// occlusion, with or without one of these, gives up the light history alone. A change of size alone rebuilds the targets
     /// alone; any other makes all pipelines anew.
     ///
     /// Some changes take effect with the next [`Renderer::set_scene`]
