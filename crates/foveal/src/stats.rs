@@ -204,9 +204,10 @@ pub struct FrameStats {
     pub occluders_over_budget: u64,
     /// Whether what is seen was found in an earlier frame, and still holds.
     pub culling_reused: bool,
-    /// Draw calls issued.
+    /// Draw calls that show the scene once, to all eyes. Those of shadows are not among them, and
+    /// anti-aliasing issues them several times where it draws the picture in parts.
     pub draws: u64,
-    /// Triangles submitted.
+    /// Triangles of these, counted for each eye.
     pub triangles: u64,
     /// Lighting evaluations of the deferred stage, backdrop included.
     pub shaded_samples: u64,
