@@ -90,24 +90,42 @@ struct Barycentrics {
     counter_clockwise: bool,
 }
 
+// From a point to the triangle, in steps to the right and down: nowhere from within, else to the line of the
+// edge beyond which the point lies farthest. `areas` lie between the point and each edge, `right` and `down`
+// are their changes per step; `side` is the sign that they have within.
+fn toward(areas: vec3f, right: vec3f, down: vec3f, side: f32) -> vec2f {
+    let per_step = inverseSqrt(max(right * right + down * down, vec3f(1e-37)));
+    let distances = side * areas * per_step;
+    let least = min(distances.x, min(distances.y, distances.z));
+    let edge = select(select(2u, 1u, distances.y == least), 0u, distances.x == least);
+    let beyond = select(-least, 0.0, all(areas >= vec3f(0.0)) || all(areas <= vec3f(0.0)));
+    return vec2f(right[edge], down[edge]) * (side * per_step[edge] * beyond);
+}
+
 // Perspective-correct barycentric coordinates, for corners given as x, y, w of clip space, at a
 // point in normalized device coordinates; `step` is a pixel's size in these, down being negative.
+//
+// A point outside is moved to the triangle: the rasterizer snaps corners to a grid, anti-aliasing asks for a
+// pixel's centre where the triangle may not reach it, and shading rates for the centre of several pixels.
+// Coordinates that were only cut at 0 would, in a triangle thinner than a pixel, be those of a place far away.
 fn barycentrics_at(a: vec3f, b: vec3f, c: vec3f, ndc: vec2f, step: vec2f) -> Barycentrics {
     // Moving the point to the origin first keeps small triangles precise.
     let p = a.xy - ndc * a.z;
     let q = b.xy - ndc * b.z;
     let r = c.xy - ndc * c.z;
-    let areas = vec3f(q.x * r.y - q.y * r.x, r.x * p.y - r.y * p.x, p.x * q.y - p.y * q.x);
+    let areas_there = vec3f(q.x * r.y - q.y * r.x, r.x * p.y - r.y * p.x, p.x * q.y - p.y * q.x);
     let areas_right = step.x * vec3f(q.y * c.z - r.y * b.z, r.y * a.z - p.y * c.z, p.y * b.z - q.y * a.z);
     let areas_down = step.y * vec3f(r.x * b.z - q.x * c.z, p.x * c.z - r.x * a.z, q.x * a.z - p.x * b.z);
+    // The sign of the areas' sum, but for points above the plane's horizon.
+    let side = select(-1.0, 1.0, dot(areas_there, vec3f(a.z, b.z, c.z)) >= 0.0);
+    let moved = toward(areas_there, areas_right, areas_down, side);
+    let areas = areas_there + areas_right * moved.x + areas_down * moved.y;
     let one = vec3f(1.0);
     let sum = dot(areas, one);
     let inverse = select(1.0 / sum, 0.0, sum == 0.0);
     let at = areas * inverse;
     let right = (areas_right - at * dot(areas_right, one)) * inverse;
     let down = (areas_down - at * dot(areas_down, one)) * inverse;
-    // The rasterizer snaps corners to a grid: where a point just outside counts as inside, so does
-    // it here.
     let inside = max(at, vec3f(0.0));
     let rest = dot(inside, one);
     return Barycentrics(select(inside / rest, one / 3.0, rest == 0.0), right, down, sum > 0.0);

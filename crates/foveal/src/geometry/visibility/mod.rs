@@ -16,6 +16,8 @@ mod dispatches;
 mod pass;
 mod raster;
 mod resolve;
+#[cfg(test)]
+mod slivers;
 mod targets;
 #[cfg(test)]
 mod tests;
