@@ -43,7 +43,7 @@ impl Stages {
         let stage = self.settings.stage();
         let (at_rates, chosen) = match (&mut self.variable, &mut self.coarse) {
             _ if !is_lit => Default::default(),
-            (Some(variable), _) => (SampleChoice::Variable, variable.plan()),
+            (Some(variable), _) => (SampleChoice::Variable, variable.plan(cameras)),
             (_, Some(coarse)) => (SampleChoice::Coarse, coarse.plan(&self.settings, cameras)),
             _ => Default::default(),
         };

@@ -40,6 +40,13 @@ impl Renderer {
         self.set_balance(Balance::new(true, 0, true));
     }
 
+    /// Leaves variable shading off for as long as losses do.
+    pub(crate) fn turn_variable_off(&mut self) {
+        let variable = self.stages.variable.as_mut();
+        let variable = variable.expect("variable shading");
+        variable.set_balance(Balance::turned_off());
+    }
+
     fn set_balance(&mut self, balance: Balance) {
         let coarse = self.stages.coarse.as_mut();
         coarse.expect("coarse shading").set_balance(balance);

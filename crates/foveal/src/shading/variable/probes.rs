@@ -41,6 +41,11 @@ impl Probes {
         self.moving = true;
     }
 
+    /// Whether something moves in the next frame.
+    pub(crate) fn are_disturbed(&self) -> bool {
+        self.moving
+    }
+
     /// The next frame is shaded in full anyway.
     pub(crate) fn settle(&mut self) {
         *self = Self::default();

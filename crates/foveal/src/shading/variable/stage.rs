@@ -77,14 +77,18 @@ impl VariableStage {
         self.probes.disturb();
     }
 
-    /// What the next frame does.
-    pub(crate) fn plan(&mut self) -> RatePlan {
+    /// What the next frame does, seen by the first of these cameras and the last one by the second.
+    pub(crate) fn plan(&mut self, (camera, previous): (&Camera, &Camera)) -> RatePlan {
+        let rests = camera == previous && !self.probes.are_disturbed();
         let plan = match self.is_covered {
             true => RatePlan::default(),
+            // What is off comes back while something moves: a still picture would change.
+            false if self.balance.is_off() && rests => RatePlan::default(),
             false => self.balance.plan(),
         };
         if !plan.active {
             self.forget();
+            self.probes.settle();
         }
         plan
     }
@@ -92,6 +96,12 @@ impl VariableStage {
     /// Whether the last frame was shaded at a rate.
     pub(crate) fn is_active(&self) -> bool {
         self.last.is_some()
+    }
+
+    /// Puts another balance in place.
+    #[cfg(test)]
+    pub(crate) fn set_balance(&mut self, balance: Balance) {
+        self.balance = balance;
     }
 
     /// Encodes the passes that find rates and samples.

@@ -422,6 +422,27 @@ fn views_of_the_rates_are_of_each_frame_whatever_rates_cost() {
 }
 
 #[test]
+fn what_has_turned_itself_off_comes_back_only_while_something_moves() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    let settings = variable((16, 9)).with(|s| s.rate.force = false);
+    let mut film = Film::new(&scene, &settings);
+    film.renderer.turn_variable_off();
+    let is_active = |film: &mut Film, x: u16| {
+        let stats = film.draw(&shifted(camera, 1e-3 * f32::from(x)));
+        stats.variable.expect("variable shading").active
+    };
+    assert!((0..300).all(|_| !is_active(&mut film, 0)));
+    assert!((0..300).any(|x| is_active(&mut film, x)));
+    film.renderer.turn_variable_off();
+    let posed = |film: &mut Film| {
+        pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
+        is_active(film, 299)
+    };
+    assert!((0..300).any(|_| posed(&mut film)));
+}
+
+#[test]
 fn where_every_sub_sample_is_shaded_no_rates_are_found() {
     let scene = scene();
     let camera = &scene.cameras[0];
