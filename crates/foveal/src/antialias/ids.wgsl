@@ -42,7 +42,9 @@ fn look_up_facet(pixel: vec2u, index: u32) -> Facet {
     let a = instance_position(i, corner_position(place.base_vertex + index_at(first)));
     let b = instance_position(i, corner_position(place.base_vertex + index_at(first + 1u)));
     let c = instance_position(i, corner_position(place.base_vertex + index_at(first + 2u)));
-    let face = cross(b - a, c - a);
+    let whole = cross(b - a, c - a);
+    // Products of four of these stay in range, whatever the triangle's size.
+    let face = whole / max(max(abs(whole.x), max(abs(whole.y), abs(whole.z))), 1e-37);
     let toward = dot(face, direction_to_eye(view_of(pixel), a)) >= 0.0;
     return Facet(id.x, id.y, position, select(-face, face, toward));
 }

@@ -3,7 +3,7 @@
 
 use foveal_generate as generate;
 use foveal_scene::{Camera, Projection, Scene};
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 
 use super::twin::{SampleTexels, resolve};
 use crate::testing::{f32_of_half, picture, rate_cells, rendered, small, texels};
@@ -285,6 +285,43 @@ fn triangles_are_sorted_into_the_same_surfaces_as_stored_subsamples() {
                 );
             }
         }
+    }
+}
+
+/// The same scene and what sees it, larger or smaller.
+fn scaled(scene: &Scene, by: f32) -> Scene {
+    let mut scene = scene.clone();
+    let grown = Mat4::from_scale(Vec3::splat(by));
+    for instance in &mut scene.instances {
+        instance.world_from_object = grown * instance.world_from_object;
+        instance.bounds = instance.bounds.transformed(grown);
+    }
+    for object in &mut scene.objects {
+        object.bounds = object.bounds.transformed(grown);
+    }
+    let eye = &mut scene.cameras[0].world_from_view.w_axis;
+    *eye = (eye.truncate() * by).extend(1.0);
+    if let Projection::Perspective { near_m, .. } = &mut scene.cameras[0].projection {
+        *near_m *= by;
+    }
+    scene
+}
+
+#[test]
+fn triangles_of_any_size_are_sorted_into_the_same_surfaces() {
+    let scene = generate::cornell();
+    let settings = settings(Antialiasing::Msaa, EdgeTest::Surface, 4)
+        .with(|s| s.geometry.path = Geometry::Visibility);
+    // By powers of two all is rounded alike.
+    let [plain, small, large] = [0.0, -20.0, 20.0].map(|power: f32| {
+        let scene = scaled(&scene, power.exp2());
+        tally(&rendered(&scene, &scene.cameras[0], &settings))
+    });
+    let edges = plain.iter().filter(|t| t[0] > 1).count();
+    assert!(edges > 20, "{edges}");
+    for (name, other) in [("small", small), ("large", large)] {
+        let off = plain.iter().zip(&other).filter(|(a, b)| a != b).count();
+        assert_eq!(off, 0, "{name}, of {edges}");
     }
 }
 
