@@ -40,6 +40,8 @@ pub(super) struct CoarseStages {
     balance: Option<Balance>,
     /// What the last frame did.
     last: RatePlan,
+    /// The scene has taken another pose since.
+    has_moved: bool,
 }
 
 impl CoarseStages {
@@ -78,7 +80,13 @@ impl CoarseStages {
                 Balance::new(forced, uncompared, compares)
             }),
             last: RatePlan::default(),
+            has_moved: false,
         }
+    }
+
+    /// The next frame shows another pose.
+    pub(super) fn scene_moved(&mut self) {
+        self.has_moved = true;
     }
 
     /// What the next frame does, seen by the first of these cameras and the last one by the second.
@@ -86,7 +94,12 @@ impl CoarseStages {
         if let Some(history) = &mut self.history {
             history.follow(settings, cameras);
         }
-        let rests = self.history.as_ref().is_some_and(HistoryStage::rests);
+        let moves = std::mem::take(&mut self.has_moved) || cameras.0 != cameras.1;
+        let rests = match &self.history {
+            Some(history) => history.rests(),
+            // What is off comes back while something moves: a still picture would change.
+            None => !moves && self.balance.as_ref().is_some_and(Balance::is_off),
+        };
         self.last = match &mut self.balance {
             // What shows the same picture again costs next to nothing, whichever way.
             Some(balance) if !rests => {

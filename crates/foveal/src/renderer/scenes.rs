@@ -142,6 +142,9 @@ impl Renderer {
         if let Some(variable) = &mut self.stages.variable {
             variable.scene_moved();
         }
+        if let Some(coarse) = &mut self.stages.coarse {
+            coarse.scene_moved();
+        }
         if let Some(history) = self.stages.history() {
             if change.moves {
                 history.scene_moved();

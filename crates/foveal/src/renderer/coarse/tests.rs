@@ -103,6 +103,25 @@ fn while_it_is_off_and_all_rests_nothing_is_shaded_again() {
 }
 
 #[test]
+fn without_history_it_comes_back_only_while_something_moves() {
+    let scene = generate::cornell();
+    let camera = &scene.cameras[0];
+    let settings = coarse().with(|s| (s.picture.width, s.picture.height) = (16, 9));
+    let mut film = Film::new(&scene, &settings);
+    let is_active =
+        |film: &mut Film, x: u16| stats(film.draw(&shifted(camera, 1e-3 * f32::from(x)))).active;
+    film.renderer.turn_coarse_off();
+    assert!((0..300).all(|_| !is_active(&mut film, 0)));
+    assert!((0..300).any(|x| is_active(&mut film, x)));
+    film.renderer.turn_coarse_off();
+    let posed = |film: &mut Film| {
+        pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
+        is_active(film, 299)
+    };
+    assert!((0..300).any(|_| posed(&mut film)));
+}
+
+#[test]
 fn light_is_kept_anew_after_it_was_off() {
     let scene = scene();
     let camera = &scene.cameras[0];
