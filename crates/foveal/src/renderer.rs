@@ -406,10 +406,14 @@ impl Renderer {
     /// Whether frames draw what culling found last, whatever their camera sees: to look at a result
     /// from elsewhere.
     pub fn freeze_culling(&mut self, frozen: bool) {
-        if std::mem::replace(&mut self.frozen, frozen) != frozen
-            && let Some(history) = self.stages.history()
-        {
-            // Other things may be seen from the same place.
+        if std::mem::replace(&mut self.frozen, frozen) == frozen {
+            return;
+        }
+        // Other things may be seen from the same place.
+        if let Some(variable) = &mut self.stages.variable {
+            variable.scene_moved();
+        }
+        if let Some(history) = self.stages.history() {
             history.scene_moved();
         }
     }

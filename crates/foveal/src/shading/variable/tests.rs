@@ -357,6 +357,23 @@ fn measuring_anew_cannot_change_the_mask_of_a_still_picture() {
 }
 
 #[test]
+fn quads_are_measured_again_where_culling_is_frozen_and_where_it_goes_on() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    let mut film = Film::new(&scene, &variable(SIZES[1]));
+    let is_probed = |film: &mut Film| {
+        film.draw(camera);
+        film.mask().iter().any(|m| m & twin::PROBED != 0)
+    };
+    for frozen in [true, false] {
+        (0..6).for_each(|_| drop(film.draw(camera)));
+        assert!(!is_probed(&mut film));
+        film.renderer.freeze_culling(frozen);
+        assert!(is_probed(&mut film));
+    }
+}
+
+#[test]
 fn what_does_not_follow_the_frame_before_starts_afresh() {
     let scene = scene();
     let camera = &scene.cameras[0];
