@@ -85,7 +85,7 @@ pub struct Args {
 
     /// Write cost against occluder triangles, boxes, resolution and threads as CSV, with a plot
     /// beside it (.svg). Generated scenes replace SCENE
-    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["scenes", "cameras", "json", "check", "learn"])]
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["scenes", "cameras", "json", "check", "learn", "threads", "boxes", "CullingArgs", "ImportArgs"])]
     scaling: Option<PathBuf>,
 
     /// Show no progress

@@ -60,6 +60,12 @@ fn words_that_contradict_each_other_are_usage_errors() {
         ("render -o a.png --eye 1,2,3 --target 1,2,3", "same point"),
         ("view --eye 1,2,3 --target 1,2,3", "same point"),
         ("bench verdict --eye 1,2,3 --target 1,2,3", "same point"),
+        (
+            "bench culling --scaling a.csv --max-vertices 9",
+            "--scaling",
+        ),
+        ("bench culling --scaling a.csv --occluders all", "--scaling"),
+        ("bench culling --scaling a.csv --threads 1", "--scaling"),
         ("bench stereo --eye 1,2,3 --target 0,0,0 --up 0,0,0", "--up"),
         (
             "render -o a.png --eye 1,2,3 --target 0,0,0 --up 0,0,0",
