@@ -368,11 +368,15 @@ impl CullingStage {
         (width, height, pixels)
     }
 
+    /// What became of an object in the last frame.
+    pub(crate) fn result(&self, object: u32) -> Visibility {
+        let result = self.results.get(object as usize);
+        result.copied().unwrap_or(Visibility::Visible)
+    }
+
     /// Whether the last frame's object is to be drawn.
     pub(crate) fn is_visible(&self, object: u32) -> bool {
-        self.results
-            .get(object as usize)
-            .is_none_or(|r| r.is_visible())
+        self.result(object).is_visible()
     }
 }
 

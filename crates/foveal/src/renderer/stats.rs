@@ -1,5 +1,7 @@
 //! A frame's stats: what the CPU knows at once, and what the device counts and times.
 
+use foveal_cull::Visibility;
+
 use super::in_flight::{Counters, InFlight};
 use super::{Renderer, Stages};
 use crate::antialias::AntialiasStage;
@@ -37,13 +39,19 @@ impl Renderer {
         }
     }
 
-    /// Objects that culling finds visible and that the pose does not show.
-    fn hidden_among_visible(&self) -> u64 {
+    /// What culling found, without the objects that the pose does not show.
+    fn without_hidden(&self, mut culled: ObjectStats) -> ObjectStats {
         let culling = self.stages.culling.as_ref();
-        let hidden = self.scene.culling.hidden_objects();
-        hidden
-            .filter(|object| culling.is_none_or(|c| c.is_visible(*object)))
-            .count() as u64
+        for object in self.scene.culling.hidden_objects() {
+            let count = match culling.map_or(Visibility::Visible, |c| c.result(object)) {
+                Visibility::Visible => &mut culled.visible,
+                Visibility::Outside => &mut culled.outside,
+                Visibility::Occluded => &mut culled.occluded,
+                Visibility::Small => &mut culled.small,
+            };
+            *count = count.saturating_sub(1);
+        }
+        culled
     }
 
     /// What the CPU knows of the frame that it has just submitted.
@@ -53,6 +61,7 @@ impl Renderer {
             submission: (submission, reason),
             ..
         } = &self.stages;
+        let culled = self.without_hidden(culled);
         let (width, height) = self.settings.picture_size();
         let list = &self.draw_list;
         let forward = [
@@ -67,7 +76,7 @@ impl Renderer {
             width,
             height,
             cpu_ms: cpu.stages(),
-            objects_visible: culled.visible.saturating_sub(self.hidden_among_visible()),
+            objects_visible: culled.visible,
             objects_outside: culled.outside,
             objects_occluded: culled.occluded,
             objects_small: culled.small,

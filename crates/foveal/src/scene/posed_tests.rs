@@ -190,9 +190,9 @@ fn assert_alone(moves: &[Moved], settings: &Settings) {
     assert_eq!(differing, 0, "{pointer}");
 }
 
-/// Objects that a pose hides are drawn in no mode of culling.
+/// Objects that a pose hides are drawn in no mode of culling, and culled in none.
 #[test]
-fn hidden_objects_are_not_counted_as_drawn() {
+fn hidden_objects_are_not_counted() {
     let hides = MOVES
         .iter()
         .copied()
@@ -208,9 +208,24 @@ fn hidden_objects_are_not_counted_as_drawn() {
         let drawn = [0.0, 1.0].map(|time_s| {
             scene.pose(time_s);
             let stats = Film::new(&scene, &settings).draw(&scene.cameras[0]);
-            stats.objects_visible
+            let culled = stats.objects_outside + stats.objects_occluded + stats.objects_small;
+            (stats.objects_visible, stats.objects_visible + culled)
         });
-        assert_eq!(drawn[0], drawn[1] + 1, "{mode:?}");
+        assert_eq!(drawn[0].0, drawn[1].0 + 1, "{mode:?}");
+        assert_eq!(drawn[0].1, drawn[1].1 + 1, "{mode:?}");
+
+        // All of them, those in view and the others.
+        let mut camera = scene.cameras[0].clone();
+        camera.world_from_view *= glam::Mat4::from_rotation_y(0.7);
+        let counts = [true, false].map(|is_shown| {
+            scene.objects.iter_mut().for_each(|o| o.visible = is_shown);
+            let stats = Film::new(&scene, &settings).draw(&camera);
+            let culled = stats.objects_outside + stats.objects_occluded + stats.objects_small;
+            [stats.objects_visible, culled]
+        });
+        assert!(counts[0][1] > 0 || mode == Culling::Off, "{mode:?}");
+        assert_eq!(counts[1], [0, 0], "{mode:?}");
+        scene.objects.iter_mut().for_each(|o| o.visible = true);
     }
 }
 
