@@ -99,7 +99,8 @@ pub struct Renderer {
     timer: GpuTimer,
     frame_bindings: FrameBindings,
     material_layout: wgpu::BindGroupLayout,
-    stages: Stages,
+    /// On the heap: what makes a renderer would hold it on the stack several times.
+    stages: Box<Stages>,
     /// How each way of drawing two eyes did on this device.
     trials: Trials,
     rate_image: Option<RateImage>,

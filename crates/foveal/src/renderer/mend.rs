@@ -60,7 +60,7 @@ impl Renderer {
         &mut self,
         settings: &Settings,
         bindings: Option<&FrameBindings>,
-    ) -> Result<Stages, Error> {
+    ) -> Result<Box<Stages>, Error> {
         Stages::new(
             &self.gpu,
             settings,

@@ -120,3 +120,10 @@ fn culling_that_is_frozen_stays_so_through_other_settings() {
     film.draw(&turned);
     assert!(found(&film) != expected);
 }
+
+/// What makes a renderer holds it on the stack several times, without optimization.
+#[test]
+fn a_renderer_takes_little_stack() {
+    let size = size_of::<crate::Renderer>();
+    assert!(size < 8 << 10, "{size} bytes");
+}

@@ -83,7 +83,7 @@ impl Stages {
         material_layout: &wgpu::BindGroupLayout,
         rate_image: Option<&RateImage>,
         (trials, clock): (&mut Trials, Option<Clock>),
-    ) -> Result<Self, Error> {
+    ) -> Result<Box<Self>, Error> {
         settings.validate(&gpu.device.limits())?;
         let (submission, reason) = Submission::choose(gpu, settings, trials, clock).await?;
         let trap = ErrorTrap::new(gpu, "preparing the renderer");
@@ -91,7 +91,7 @@ impl Stages {
         let shading = ShadingPass::new(gpu, settings, frame);
         let layout = EyeLayout::of(settings);
         let shadows = ShadowStage::new(gpu, settings, frame, material_layout);
-        let stages = Self {
+        let stages = Box::new(Self {
             settings: settings.clone(),
             culling: CullingStage::new(settings)?,
             targets: Targets::new(gpu, settings, submission),
@@ -116,7 +116,7 @@ impl Stages {
             view: ViewPass::new(gpu, settings.picture.view, frame),
             eyes_shown: EyesPass::new(gpu, settings, frame),
             submission: (submission, reason),
-        };
+        });
         trap.finish().await?;
         Ok(stages)
     }

@@ -60,7 +60,7 @@ impl Renderer {
             settings,
             submission: (submission, reason),
             ..
-        } = &self.stages;
+        } = &*self.stages;
         let culled = self.without_hidden(culled);
         let (width, height) = self.settings.picture_size();
         let list = &self.draw_list;
@@ -205,7 +205,7 @@ impl Renderer {
     pub(super) async fn make_room(&mut self) -> Result<(), Error> {
         let Stages {
             settings, targets, ..
-        } = &mut self.stages;
+        } = &mut *self.stages;
         let Some(samples) = &mut targets.samples else {
             return Ok(());
         };

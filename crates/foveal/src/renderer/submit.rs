@@ -106,7 +106,7 @@ impl Renderer {
             targets,
             submission,
             ..
-        } = &mut self.stages;
+        } = &mut *self.stages;
         let is_visible = |object| culling.as_ref().is_none_or(|c| c.is_visible(object));
         list.build(
             scene,
@@ -130,7 +130,7 @@ impl Renderer {
     fn upload(&mut self, frame: &Frame<'_>, seen: &Seen) -> ClusterGrid {
         let Stages {
             settings, lights, ..
-        } = &mut self.stages;
+        } = &mut *self.stages;
         (self.scene).expose(&self.gpu, settings.picture.exposure_stops);
         let (gpu, scene) = (&self.gpu, &self.scene);
         let layout = EyeLayout::of(settings);
@@ -164,7 +164,7 @@ impl Renderer {
             shadows,
             culling,
             ..
-        } = &mut self.stages;
+        } = &mut *self.stages;
         if !has_receivers(settings) {
             return;
         }
