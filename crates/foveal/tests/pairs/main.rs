@@ -1,0 +1,397 @@
+//! Pairs of settings that show the same, in scenes, from cameras and with other settings by chance.
+//!
+//! A failure is made smaller, towards default settings, and printed.
+//! `FOVEAL_PAIRS=400 FOVEAL_PAIRS_SEED=7 cargo test --release -p foveal --test pairs` makes it long.
+//! `FOVEAL_PAIR=0,11,0,235` draws the pair of these numbers alone, which a failure tells.
+
+use std::sync::LazyLock;
+
+mod motion;
+mod placement;
+mod settings;
+
+use foveal::{
+    Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, CullingEyes, Error, EyeClipping,
+    Frame, Geometry, Gpu, LightAssignment, LightingPass, MaterialDispatch, RateSource, Renderer,
+    RendererOptions, Settings, Shading, Shadows, Stereo,
+};
+use foveal_generate as generate;
+use foveal_scene::{Camera, LightKind, Scene};
+use glam::Vec3;
+use pollster::block_on;
+use proptest::prelude::Rng;
+use proptest::test_runner::{RngAlgorithm, TestRng};
+
+use placement::Placement;
+use settings::Chance;
+
+/// Numbers by which a pair, its scene, its cameras, its poses and its settings are chosen.
+const NUMBERS: usize = 32 + 2 * settings::NUMBERS;
+
+/// Frames until light that is kept has been shaded anew everywhere.
+const ROUND: usize = 20;
+
+static GPU: LazyLock<Gpu> =
+    LazyLock::new(|| block_on(Gpu::open(None)).expect("the tests need a graphics adapter"));
+
+static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
+    let names = ["cornell", "alpha", "lobes", "materials-grid", "demo:1000"];
+    let named = |name| generate::by_name(name).expect("a scene of that name");
+    names.map(named).into_iter().map(lit).collect()
+});
+
+fn lit(mut scene: Scene) -> Scene {
+    scene.light_by_default();
+    generate::add_point_lights(&mut scene, 12, 3);
+    for lamp in scene.lights.iter_mut().rev().take(12).step_by(3) {
+        lamp.kind = LightKind::Spot {
+            inner_rad: 0.3,
+            outer_rad: 0.8,
+        };
+        lamp.direction = Vec3::new(0.3, -0.9, -0.3).normalize();
+    }
+    let last = scene.instances.last().expect("an instance").mesh;
+    scene.meshes[last as usize].deforms = true;
+    scene
+}
+
+/// Two sides, how far apart a byte of their pictures may be, the share of bytes that may be farther,
+/// whether the last frame alone counts, whether the second side draws no other, and what it is set to
+/// in the frames before the last of motion.
+struct Pair {
+    name: &'static str,
+    sides: [Settings; 2],
+    tolerance: u8,
+    beyond: f32,
+    at_rest: bool,
+    skips: bool,
+    before: Option<Settings>,
+    placement: Option<Placement>,
+}
+
+fn pair(chance: &mut Chance<'_>, both: &Settings, before: &mut Chance<'_>) -> Pair {
+    type Change<'a> = &'a dyn Fn(&mut Settings);
+    let sides = |a: Change<'_>, b: Change<'_>| [both.clone().with(a), both.clone().with(b)];
+    let of = |name, sides| Pair {
+        name,
+        sides,
+        tolerance: 0,
+        beyond: 0.0,
+        at_rest: false,
+        skips: false,
+        before: None,
+        placement: None,
+    };
+    // Tiles lie elsewhere in the atlas of shadows, so that a texel at an edge may turn.
+    let has_shadows = both.lighting.shadows != Shadows::Off;
+    match chance.of(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13]) {
+        0 => {
+            let eyes = chance.of(&[CullingEyes::Each, CullingEyes::Shared]);
+            let scale = chance.of(&[4, 1, 2, 7]);
+            let radius_m = chance.of(&[0.0, 0.3]);
+            let culled = |s: &mut Settings| {
+                s.culling.mode = Culling::Occlusion;
+                s.culling.eyes = eyes;
+                s.culling.buffer_scale = scale;
+                s.culling.radius_m = radius_m;
+            };
+            of(
+                "culling",
+                sides(&|s| s.culling.mode = Culling::Off, &culled),
+            )
+        }
+        1 => {
+            let clipping = chance.of(&[EyeClipping::Discard, EyeClipping::Clip]);
+            let side = |mode| {
+                move |s: &mut Settings| {
+                    s.stereo.mode = mode;
+                    s.stereo.clipping = clipping;
+                }
+            };
+            of(
+                "eyes",
+                sides(&side(Stereo::TwoPass), &side(Stereo::Instanced)),
+            )
+        }
+        2 => {
+            let side = |dispatch| {
+                move |s: &mut Settings| {
+                    s.geometry.path = Geometry::Visibility;
+                    s.geometry.material_dispatch = dispatch;
+                }
+            };
+            let [a, b] = [MaterialDispatch::Family, MaterialDispatch::Material];
+            of("materials", sides(&side(a), &side(b)))
+        }
+        3 => of("draws", sides(&|s| s.geometry.merge_draws = false, &|_| ())),
+        4 => of("again", sides(&|_| (), &|_| ())),
+        5 => {
+            let common = |s: &mut Settings| {
+                s.stereo.mode = Stereo::Off;
+                if s.antialiasing.mode == Antialiasing::Ssaa {
+                    s.antialiasing.mode = Antialiasing::Msaa;
+                }
+            };
+            let full = |s: &mut Settings| {
+                common(s);
+                s.shading.mode = Shading::Full;
+            };
+            let kept = |s: &mut Settings| {
+                common(s);
+                s.shading.mode = Shading::Coarse;
+                s.coarse.backend = CoarseBackend::Compute;
+                s.coarse.composite = Composite::Light;
+                s.coarse.sample = CoarseSample::Center;
+                s.coarse.history = true;
+            };
+            Pair {
+                at_rest: true,
+                ..of("light at rest", sides(&full, &kept))
+            }
+        }
+        6 => {
+            let every = |s: &mut Settings| {
+                s.shading.mode = Shading::Variable;
+                s.coarse.source = RateSource::Constant;
+                s.coarse.constant_level = 0;
+                s.stereo.mode = Stereo::Off;
+            };
+            let full = |s: &mut Settings| {
+                s.shading.mode = Shading::Full;
+                s.stereo.mode = Stereo::Off;
+            };
+            Pair {
+                tolerance: 1,
+                ..of("every pixel", sides(&full, &every))
+            }
+        }
+        7 => {
+            let side = |pass| move |s: &mut Settings| s.lighting.pass = pass;
+            let [a, b] = [LightingPass::Fragment, LightingPass::Compute];
+            of("passes", sides(&side(a), &side(b)))
+        }
+        8 => {
+            let full = |s: &mut Settings| {
+                s.shading.mode = Shading::Full;
+                // Else it follows the size of the scene as it was set.
+                s.lighting.ambient_occlusion_radius_m = 0.4;
+            };
+            Pair {
+                beyond: if has_shadows { 0.005 } else { 0.0 },
+                at_rest: true,
+                skips: true,
+                ..of("afresh", sides(&full, &full))
+            }
+        }
+        9 => {
+            let side = |s: &mut Settings| {
+                if s.shading.mode == Shading::Variable {
+                    s.shading.mode = Shading::Full;
+                }
+                s.lighting.ambient_occlusion_radius_m = 0.4;
+            };
+            Pair {
+                beyond: if has_shadows { 0.005 } else { 0.0 },
+                at_rest: true,
+                before: Some(settings::settings(before)),
+                ..of("set", sides(&side, &side))
+            }
+        }
+        10 => {
+            let side = |path| {
+                move |s: &mut Settings| {
+                    s.shading.mode = Shading::Full;
+                    s.geometry.path = path;
+                }
+            };
+            let [a, b] = [Geometry::Gbuffer, Geometry::Visibility];
+            Pair {
+                tolerance: 1,
+                beyond: 0.002,
+                ..of("geometry", sides(&side(a), &side(b)))
+            }
+        }
+        11 | 12 => {
+            let scale = chance.of(&[4.0, 0.25, 0.015_625]);
+            let turned = chance.of(&[false, true]);
+            let placement = Placement { scale, turned };
+            let side = |s: &mut Settings| {
+                s.lighting.ambient_occlusion_radius_m = 0.4;
+                // Where it searches for casters turns with the tiles.
+                if turned && s.lighting.shadows == Shadows::Contact {
+                    s.lighting.shadows = Shadows::Soft;
+                }
+            };
+            let [here, mut there] = sides(&side, &side);
+            placement.settings(&mut there);
+            // Lamps beyond some range draw tiles from the same distance on, so that depths are
+            // rounded elsewhere.
+            let is_rounded = turned || here.lighting.shadows != Shadows::Off;
+            Pair {
+                tolerance: if is_rounded { 2 } else { 0 },
+                beyond: if is_rounded { 0.02 } else { 0.0 },
+                placement: Some(placement),
+                ..of("placed", [here, there])
+            }
+        }
+        _ => Pair {
+            tolerance: 1,
+            ..of(
+                "lights",
+                sides(&|s| s.lighting.assignment = LightAssignment::Brute, &|s| {
+                    s.lighting.assignment = LightAssignment::Clustered
+                }),
+            )
+        },
+    }
+}
+
+/// `None` where these settings cannot be drawn.
+fn drawable<T>(result: Result<T, Error>) -> Option<T> {
+    match result {
+        Err(Error::Setting { .. } | Error::Limit { .. }) => None,
+        result => Some(result.expect("nothing else fails")),
+    }
+}
+
+/// The pictures of all frames from `first` on, or of the last one; `None` where these settings cannot
+/// be drawn. Until the last frame of motion the renderer has the settings `before`.
+fn pictures(
+    poses: &[Scene],
+    cameras: &[Camera],
+    settings: &Settings,
+    before: Option<&Settings>,
+    last_alone: bool,
+    first: usize,
+) -> Option<Vec<Vec<u8>>> {
+    block_on(async {
+        let start = before.unwrap_or(settings);
+        let new = Renderer::new(&GPU, start, RendererOptions::default());
+        let mut renderer = drawable(new.await)?;
+        let start = &poses[first.min(poses.len() - 1)];
+        renderer.set_scene(start).await.expect("it fits");
+        let mut found = Vec::new();
+        for (i, camera) in cameras.iter().enumerate().skip(first) {
+            let pose = poses.get(i).filter(|_| i > first);
+            if let (3, Some(before)) = (i, before) {
+                drawable(renderer.set_settings(settings).await)?;
+                if settings.needs_scene_again(before) {
+                    let pose = pose.unwrap_or(&poses[0]);
+                    renderer.set_scene(pose).await.expect("it fits");
+                }
+            }
+            if let Some(pose) = pose {
+                renderer.update_pose(pose).await.expect("it fits");
+            }
+            let frame = Frame::new(camera).with_previous(&cameras[i.saturating_sub(1)]);
+            drawable(renderer.render(&frame).await)?;
+            if !last_alone || i + 1 == cameras.len() {
+                found.push(renderer.read_picture().await.expect("read"));
+            }
+        }
+        Some(found)
+    })
+}
+
+/// Draws both sides; tells whether they could be.
+fn compare(numbers: &[u8]) -> Result<bool, String> {
+    // Each has numbers of its own, so that fewer choices of one leave the others alone.
+    let of = |range: std::ops::Range<usize>| Chance(numbers[range].iter());
+    let scene = &SCENES[of(0..1).of(&[0, 1, 2, 3, 4])];
+    let both = 32..32 + settings::NUMBERS;
+    let before = both.end..NUMBERS;
+    let both = settings::settings(&mut of(both));
+    let pair = pair(&mut of(1..8), &both, &mut of(before));
+    let frames = if pair.at_rest { 4 + ROUND } else { 4 };
+    let cameras = motion::cameras(&mut of(8..20), scene, frames);
+    let poses = motion::poses(&mut of(20..32), scene);
+    let draw = |poses: &[_], cameras: &[_], side, before, first| {
+        pictures(poses, cameras, side, before, pair.at_rest, first)
+    };
+    let first = if pair.skips { cameras.len() - 1 } else { 0 };
+    let (mut other_poses, mut other_cameras) = (poses.clone(), cameras.clone());
+    if let Some(placement) = pair.placement {
+        other_poses
+            .iter_mut()
+            .for_each(|pose| placement.scene(pose));
+        other_cameras
+            .iter_mut()
+            .for_each(|camera| placement.camera(camera));
+    }
+    let [a, b] = &pair.sides;
+    let a = draw(&poses, &cameras, a, None, 0);
+    let b = draw(&other_poses, &other_cameras, b, pair.before.as_ref(), first);
+    let (Some(a), Some(b)) = (a, b) else {
+        return Ok(false);
+    };
+    for (frame, (a, b)) in a.iter().zip(&b).enumerate() {
+        assert_eq!(a.len(), b.len());
+        let apart = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
+        let most = apart.clone().max();
+        let beyond = apart.filter(|apart| *apart > pair.tolerance).count();
+        if beyond as f32 > pair.beyond * a.len() as f32 {
+            let (name, bytes, before) = (pair.name, a.len(), pair.before);
+            let used = NUMBERS - numbers.iter().rev().take_while(|n| **n == 0).count();
+            let numbers: Vec<_> = numbers[..used].iter().map(u8::to_string).collect();
+            let numbers = numbers.join(",");
+            return Err(format!(
+                "{name}, frame {frame}: {beyond} of {bytes} bytes are apart, by up to {most:?}, with \
+                 {both:?}, before {before:?}, by FOVEAL_PAIR={numbers}"
+            ));
+        }
+    }
+    Ok(true)
+}
+
+/// Zeros in place of numbers, as long as it fails; the failure of what is left.
+fn smaller(mut numbers: Vec<u8>, mut failure: String) -> String {
+    let mut length = NUMBERS.div_ceil(2);
+    while length > 0 {
+        for start in (0..NUMBERS).step_by(length) {
+            let mut fewer = numbers.clone();
+            fewer[start..NUMBERS.min(start + length)].fill(0);
+            if fewer != numbers
+                && let Err(smaller) = compare(&fewer)
+            {
+                (numbers, failure) = (fewer, smaller);
+            }
+        }
+        length /= 2;
+    }
+    failure
+}
+
+fn number(name: &str, default: u64) -> u64 {
+    std::env::var(name).map_or(default, |text| text.parse().expect("a number"))
+}
+
+/// The numbers of [`compare`] that a failure told.
+fn told(text: &str) -> Vec<u8> {
+    let told = text.split(',').map(|n| n.trim().parse().expect("a number"));
+    told.chain(std::iter::repeat(0)).take(NUMBERS).collect()
+}
+
+#[test]
+fn both_sides_of_a_pair_show_the_same() {
+    if let Ok(text) = std::env::var("FOVEAL_PAIR") {
+        compare(&told(&text))
+            .map(drop)
+            .unwrap_or_else(|failure| panic!("{failure}"));
+        return;
+    }
+    let pairs = number("FOVEAL_PAIRS", 24);
+    let seed = number("FOVEAL_PAIRS_SEED", 1).to_le_bytes().repeat(4);
+    let mut random = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
+    let mut drawn = 0;
+    let mut failures = Vec::new();
+    for _ in 0..pairs {
+        let mut numbers = vec![0; NUMBERS];
+        random.fill_bytes(&mut numbers);
+        match compare(&numbers) {
+            Ok(could) => drawn += u64::from(could),
+            Err(failure) => failures.push(smaller(numbers, failure)),
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n\n"));
+    assert!(2 * drawn > pairs, "of {pairs} pairs {drawn} could be drawn");
+}
