@@ -59,6 +59,26 @@ test('the picture is that of WebGPU', async (t) => {
   assert.ok(error < 0.01, `FLIP to WebGPU is ${error}`);
 });
 
+test('shadows are those of WebGPU', async (t) => {
+  const full = await open('webgpu');
+  t.after(() => full.close());
+  const folder = mkdtempSync(join(tmpdir(), 'foveal-web-'));
+  const files = [];
+  for (const [name, where, shadows] of [['webgl2', site, 'soft'], ['webgpu', full, 'soft'], ['none', site, 'off']]) {
+    const { page, said } = await where.visit(`#scene=cornell&technique=culling&left.anisotropy=1&left.shadows=${shadows}&scale=0.5&split=1`, { width: 848, height: 270 });
+    files.push(join(folder, `${name}.png`));
+    await savePicture(page, false, files.at(-1));
+    await shot(page, `shadows-${name}`);
+    const offered = await page.evaluate(() => window.foveal.settings.table.find(({ key }) => key === 'shadows').names);
+    assert.equal(offered.includes('contact'), name === 'webgpu');
+    assert.deepEqual(said, []);
+    await page.context().close();
+  }
+  const error = flip(files[0], files[1]);
+  console.log(`FLIP of WebGL 2 to WebGPU with shadows: ${error}, without: ${flip(files[2], files[1])}`);
+  assert.ok(error < 0.01 && flip(files[2], files[1]) > 0.05, `FLIP to WebGPU is ${error}`);
+});
+
 test('both eyes in one submission, by discarding, give the picture of two passes', async () => {
   const { page, said } = await site.visit('#scene=demo:1000&technique=stereo&scale=0.5', SMALL);
   for (const show of ['side-by-side', 'anaglyph', 'anaglyph-dubois']) {

@@ -11,7 +11,7 @@ struct Described {
     label: &'static str,
     help: &'static str,
     kind: &'static str,
-    names: &'static [&'static str],
+    names: Vec<&'static str>,
     least: f64,
     most: f64,
 }
@@ -27,13 +27,15 @@ impl From<&Setting> for Described {
             Kind::Text => ("text", &[][..], (0.0, 0.0)),
             Kind::File => ("file", &[][..], (0.0, 0.0)),
         };
+        let is_offered =
+            |name: &&str| !cfg!(feature = "webgl") || setting.has_name_in_reduced_set(name);
         Self {
             key: setting.key,
             stage: setting.stage,
             label: setting.label,
             help: setting.help,
             kind,
-            names,
+            names: names.iter().copied().filter(is_offered).collect(),
             least,
             most,
         }

@@ -89,7 +89,7 @@ impl AntialiasPipelines {
         );
         let combination = shader::module(gpu, "combination", shader::ANTIALIAS_COMBINE);
 
-        let lighting = lighting_constants(gpu, settings);
+        let lighting = lighting_constants(settings);
         // Views of the G-buffer show averages.
         let mirror = (
             "MIRROR",

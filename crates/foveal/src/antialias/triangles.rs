@@ -80,7 +80,7 @@ impl TriangleStage {
             compute,
             &[read, read, write, uint, uint, uint],
         );
-        let lighting = lighting_constants(gpu, settings);
+        let lighting = lighting_constants(settings);
         let [count, side] = Pattern::of(settings).constants();
         let coarse = f64::from(u8::from(!averages_all(settings)));
         let geometry = geometry_layout(gpu);

@@ -67,6 +67,7 @@ override ADDED: bool = false;
 @group(2) @binding(1) var cluster_table: texture_2d<u32>;
 #else
 @group(2) @binding(1) var<storage, read> cluster_lights: array<u32>;
+#endif
 #ifdef TABLES
 @group(2) @binding(2) var shadow_table: texture_2d<u32>;
 #else
@@ -74,7 +75,6 @@ override ADDED: bool = false;
 #endif
 @group(2) @binding(3) var shadow_atlas: texture_depth_2d;
 @group(2) @binding(4) var shadow_sampler: sampler_comparison;
-#endif
 
 // A fragment's position in pixels of the target.
 fn target_position(in: VertexOut) -> vec2f {

@@ -91,7 +91,7 @@ impl Recipes {
         (frame, open_frame): (&wgpu::BindGroupLayout, &wgpu::BindGroupLayout),
         material: &wgpu::BindGroupLayout,
     ) -> Self {
-        let mut constants = lighting_constants(gpu, settings);
+        let mut constants = lighting_constants(settings);
         constants.extend(submission.constants());
         let layered = submission == Submission::Multiview;
         constants.push(("LAYERED", f64::from(u8::from(layered))));

@@ -38,34 +38,31 @@ pub(crate) struct SceneLights<'a> {
 }
 
 impl<'a> SceneLights<'a> {
-    /// What lighting binds: the lights, the clusters' bits and, where there are shadows, what it
-    /// looks up of them.
-    pub(crate) fn resources(self) -> Vec<wgpu::BindingResource<'a>> {
-        match &self.assigner.means {
-            Means::Pass(..) => {
-                let lights = self.table.resource();
-                let [rows, atlas, sampler] = self.shadows.resources();
-                let bits = self.assigner.bits.as_entire_binding();
-                vec![lights, bits, rows, atlas, sampler]
-            }
-            Means::Cpu(clusters) => vec![self.table.resource(), clusters.resource()],
-        }
+    /// What lighting binds: the lights, the clusters' bits and what it looks up of shadows.
+    pub(crate) fn resources(self) -> [wgpu::BindingResource<'a>; 5] {
+        let bits = match &self.assigner.means {
+            Means::Pass(..) => self.assigner.bits.as_entire_binding(),
+            Means::Cpu(clusters) => clusters.resource(),
+        };
+        let [rows, atlas, sampler] = self.shadows.resources();
+        [self.table.resource(), bits, rows, atlas, sampler]
     }
 
     /// What a layout says of [`SceneLights::resources`].
-    pub(crate) fn binding_types(gpu: &Gpu) -> Vec<wgpu::BindingType> {
-        let mut types = vec![Table::binding_type(gpu)];
-        if gpu.is_reduced() {
-            types.push(Table::binding_type(gpu));
+    pub(crate) fn binding_types(gpu: &Gpu) -> [wgpu::BindingType; 5] {
+        let table = Table::binding_type(gpu);
+        let bits = if gpu.is_reduced() {
+            table
         } else {
-            types.extend([
-                storage_read(),
-                Table::binding_type(gpu),
-                sampled(wgpu::TextureSampleType::Depth),
-                wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
-            ]);
-        }
-        types
+            storage_read()
+        };
+        [
+            table,
+            bits,
+            table,
+            sampled(wgpu::TextureSampleType::Depth),
+            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
+        ]
     }
 }
 

@@ -15,7 +15,7 @@ use crate::gpu::read_buffer;
 use crate::lights::cluster_bits;
 use crate::shader::{self, Shader};
 use crate::testing::{gpu, picture, rendered, rendered_on, small};
-use crate::{Culling, EnvironmentSource, Gpu, Output, Renderer, Settings, Stereo};
+use crate::{Culling, EnvironmentSource, Gpu, Output, Renderer, Settings, Shadows, Stereo};
 
 /// A device that was asked for no more than WebGL 2 has.
 fn reduced_gpu() -> &'static Gpu {
@@ -72,6 +72,40 @@ fn the_reduced_renderer_gives_the_full_ones_picture() {
             let share = differing(&full, &ours, 2);
             assert!(share < 1e-3, "{name}: {share} of the channels");
             assert!(differing(&full, &vec![0; full.len()], 20) > 0.2, "{name}");
+        }
+    }
+}
+
+#[test]
+fn shadows_are_those_of_the_full_renderer() {
+    for name in ["cornell", "alpha", "demo:1000"] {
+        let mut scene = generate::by_name(name).expect("it is generated");
+        scene.light_by_default();
+        generate::add_point_lights(&mut scene, 6, 3);
+        let spot = scene.lights.last_mut().expect("a light");
+        spot.direction = glam::Vec3::NEG_Y;
+        spot.kind = foveal_scene::LightKind::Spot {
+            inner_rad: 0.3,
+            outer_rad: 0.8,
+        };
+        let camera = &scene.cameras[0];
+        let of = |shadows| {
+            small(161, 99).with(|s| {
+                s.lighting.shadows = shadows;
+                s.lighting.shadow_atlas = 2048;
+                s.culling.mode = Culling::Occlusion;
+            })
+        };
+        let unshadowed = picture(&rendered(&scene, camera, &of(Shadows::Off)));
+        for shadows in [Shadows::Hard, Shadows::Soft] {
+            let full = picture(&rendered(&scene, camera, &of(shadows)));
+            let ours = reduced(&scene, camera, &of(shadows));
+            let ours = pollster::block_on(ours.read_picture()).expect("read-back works");
+            // The sampler blends by fewer bits.
+            let share = differing(&full, &ours, 2);
+            assert!(share < 1e-3, "{name}, {shadows:?}: {share} of the channels");
+            let shadowed = differing(&unshadowed, &ours, 12);
+            assert!(shadowed > 0.03, "{name}, {shadows:?}: {shadowed}");
         }
     }
 }
@@ -179,7 +213,7 @@ const SINCE_ES_3_10: [&str; 19] = [
 /// WebGL 2 takes GLSL ES 3.00 alone.
 #[test]
 fn the_reduced_shaders_can_be_said_in_the_language_of_webgl_2() {
-    let all: [(Shader, [&str; 2]); 6] = [
+    let all: [(Shader, [&str; 2]); 8] = [
         (
             shader::REDUCED_GBUFFER.variant(&["REDUCED"]),
             ["vertex", "fragment"],
@@ -196,6 +230,8 @@ fn the_reduced_shaders_can_be_said_in_the_language_of_webgl_2() {
             shader::FORWARD_FORWARD.variant(&["STROKES", "REDUCED"]),
             ["vertex", "fragment"],
         ),
+        (shader::SHADOW_CASTER, ["vertex_of_caster", "cast_shadow"]),
+        (shader::SHADOW_CLEAR, ["full_screen", "clear"]),
         (shader::OUTPUT_TONE_MAP, ["full_screen", "tone_map"]),
         (shader::OUTPUT_EYES, ["full_screen", "show_eyes"]),
     ];

@@ -12,13 +12,11 @@ use crate::lights::SceneLights;
 use crate::recorder::Recorder;
 use crate::{LightAssignment, LightingModel, Settings, shader};
 
-/// Settings that change the lighting shaders. The reduced ones have no shadows.
-pub(crate) fn lighting_constants(gpu: &Gpu, settings: &Settings) -> Vec<(&'static str, f64)> {
+/// Settings that change the lighting shaders.
+pub(crate) fn lighting_constants(settings: &Settings) -> Vec<(&'static str, f64)> {
     let mut constants = model_constants(settings).to_vec();
     constants.extend(environment_constants(settings));
-    if !gpu.is_reduced() {
-        constants.push(("SHADOWS", f64::from(settings.lighting.shadows as u8)));
-    }
+    constants.push(("SHADOWS", f64::from(settings.lighting.shadows as u8)));
     constants
 }
 
@@ -75,7 +73,7 @@ impl ShadingPass {
             wgpu::ShaderStages::COMPUTE,
             if gpu.is_reduced() { &[] } else { &listed },
         );
-        let constants = lighting_constants(gpu, settings);
+        let constants = lighting_constants(settings);
         let drawn = if gpu.is_reduced() {
             shader::SHADING_EVERY_PIXEL.variant(&["REDUCED"])
         } else {

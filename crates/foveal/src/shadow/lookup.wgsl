@@ -4,12 +4,40 @@
 #import shared/frame.wgsl
 #import shared/light.wgsl
 #import shared/surface.wgsl
+#ifndef REDUCED
 #import shadow/contact.wgsl
+#endif
 #import shadow/tile.wgsl
 #expects shadow_atlas, shadow_sampler
 
 // Part of the light that passes at a place in the tile, in texels, with a reversed depth.
 // `softness`: texels by which an edge fades to each side, per depth between it and the place.
+#ifdef REDUCED
+// WebGL 2 can neither read depth nor gather it: what is compared is blended by the sampler.
+fn shadow_passing(tile: ShadowTile, at: vec2f, depth: f32, softness: f32) -> f32 {
+    let texel = 1.0 / f32(textureDimensions(shadow_atlas).x);
+    if SHADOWS != SHADOWS_SOFT {
+        let inside = clamp(floor(at), vec2f(0.0), vec2f(tile.side - 1.0)) + 0.5;
+        return textureSampleCompareLevel(shadow_atlas, shadow_sampler, (tile.corner + inside) * texel, depth);
+    }
+    // Four by four texels with the weights below, two by two of them at a time: the sampler blends
+    // by where it is between them.
+    let inside = clamp(at, vec2f(2.0), vec2f(tile.side - 2.0)) - 0.5;
+    let first = min(floor(inside), vec2f(tile.side - 3.0));
+    let f = inside - first;
+    let low_weight = 2.0 - f;
+    let high_weight = 1.0 + f;
+    let low = (tile.corner + first - 0.5 + 1.0 / low_weight) * texel;
+    let high = (tile.corner + first + 1.5 + f / high_weight) * texel;
+    let a = textureSampleCompareLevel(shadow_atlas, shadow_sampler, low, depth);
+    let b = textureSampleCompareLevel(shadow_atlas, shadow_sampler, vec2f(high.x, low.y), depth);
+    let c = textureSampleCompareLevel(shadow_atlas, shadow_sampler, vec2f(low.x, high.y), depth);
+    let d = textureSampleCompareLevel(shadow_atlas, shadow_sampler, high, depth);
+    let upper = low_weight.x * a + high_weight.x * b;
+    let lower = low_weight.x * c + high_weight.x * d;
+    return (low_weight.y * upper + high_weight.y * lower) / 9.0;
+}
+#else
 fn shadow_passing(tile: ShadowTile, at: vec2f, depth: f32, softness: f32) -> f32 {
     if SHADOWS == SHADOWS_CONTACT {
         return contact_passing(tile, at, depth, softness);
@@ -40,6 +68,7 @@ fn shadow_passing(tile: ShadowTile, at: vec2f, depth: f32, softness: f32) -> f32
     let lower = y.z * (x.x * c.w + x.y * c.z + x.z * d.w + x.w * d.z) + y.w * (x.x * c.x + x.y * c.y + x.z * d.x + x.w * d.y);
     return (upper + lower) / select(9.0, 1.0, tile.is_narrow);
 }
+#endif
 
 // Metres by which a place is moved along its normal before it is compared, so that a surface does
 // not shade itself: a texel's width, times what the filter and the slope ask for. `cosine`: of the
@@ -187,7 +216,11 @@ fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, bloc
         let away = abs(vec2f(dot(axes[0], position), dot(axes[1], position)) - cascade.xy);
         let texel_m = 2.0 * cascade.z / max(tile.side, 1.0);
         // The last one holds the scene: there is none to go on to.
+#ifdef REDUCED
+        let reach = SHADOW_BORDER;
+#else
         let reach = select(SHADOW_BORDER, CONTACT_REACH + 2.0, SHADOWS == SHADOWS_CONTACT);
+#endif
         let margin = select(reach * texel_m, 0.0, i == 3u);
         if tile.side == 0.0 || max(away.x, away.y) > cascade.z - margin {
             continue;
@@ -207,6 +240,7 @@ fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, bloc
     return UNSHADOWED;
 }
 
+#ifdef LIGHT
 // Part of a light's rays that reach a sample's block: at four places, each blended between four
 // texels. A tap's depth follows the surface's plane where that comes nearer to the light, so that the
 // surface does not shade itself, and stays where it goes away: so no tap lies behind all surfaces that
@@ -226,6 +260,7 @@ fn block_passing(place: ShadowPlace) -> f32 {
     }
     return 0.25 * sum;
 }
+#endif
 
 fn arriving_at(place: ShadowPlace) -> Arriving {
     if place.tile.side == 0.0 {

@@ -84,7 +84,7 @@ impl ShadowStage {
         material_layout: &wgpu::BindGroupLayout,
     ) -> Self {
         let lighting = &settings.lighting;
-        let is_on = lighting.shadows != Shadows::Off && !gpu.is_reduced();
+        let is_on = lighting.shadows != Shadows::Off;
         let atlas_level = lighting.shadow_atlas.ilog2();
         let side = if is_on { 1 << atlas_level } else { 1 };
         let atlas = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -103,10 +103,18 @@ impl ShadowStage {
                 | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
+        let filter = if gpu.is_reduced() {
+            wgpu::FilterMode::Linear
+        } else {
+            wgpu::FilterMode::Nearest
+        };
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("shadow comparison"),
             // Reversed depth: light passes to what is as near as what is drawn, or nearer.
             compare: Some(wgpu::CompareFunction::GreaterEqual),
+            // The reduced lookup leaves it to the sampler to blend what is compared.
+            mag_filter: filter,
+            min_filter: filter,
             ..Default::default()
         });
         Self {

@@ -5,11 +5,10 @@
 #import shared/light_list.wgsl
 #import shared/surface.wgsl
 #import shared/environment.wgsl
-#ifdef REDUCED
-#import reduced/missing.wgsl
-#else
 #import shadow/lookup.wgsl
 #import shadow/tile.wgsl
+#ifdef REDUCED
+#import reduced/missing.wgsl
 #endif
 
 // Blinn-Phong as in the techniques' sources, else metallic-roughness GGX.
@@ -129,14 +128,12 @@ fn add_directional(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block_m: f32,
         return sum;
     }
     var arriving = ALL_ARRIVES;
-#ifndef REDUCED
     if SHADOWS != 0u {
         arriving = directional_arriving(index, light, s, block_m);
         if arriving.part <= 0.0 && arriving.variance <= 0.0 {
             return sum;
         }
     }
-#endif
     return add_incident(sum, s, mirror, v, a, n_dot_l, arriving);
 }
 
@@ -148,14 +145,12 @@ fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block_m: f32, index
         return sum;
     }
     var arriving = ALL_ARRIVES;
-#ifndef REDUCED
     if SHADOWS != 0u {
         arriving = light_arriving(index, light, s, block_m);
         if arriving.part <= 0.0 && arriving.variance <= 0.0 {
             return sum;
         }
     }
-#endif
     return add_incident(sum, s, mirror, v, a, n_dot_l, arriving);
 }
 
@@ -216,12 +211,10 @@ fn with_lights(walk: LightWalk, position: vec3f, normal: vec3f) -> LightWalk {
         }
         if w.bits != 0u {
             found = true;
-#ifndef REDUCED
             if SHADOWS != 0u {
                 w.sphere = light_sphere(light_number(w));
                 found = may_reach(w.sphere, position, normal);
             }
-#endif
             w.bits = select(w.bits & (w.bits - 1u), w.bits, found);
         }
         continuing {
@@ -252,11 +245,9 @@ fn light_number(walk: LightWalk) -> u32 {
 // The first light of a walk.
 fn light_of(walk: LightWalk) -> Light {
     let index = light_number(walk);
-#ifndef REDUCED
     if SHADOWS != 0u {
         return light_in(index, walk.sphere);
     }
-#endif
     return light_at(index);
 }
 

@@ -18,17 +18,12 @@ const MISSING_STAGES: [&str; 6] = [
 ];
 
 /// Single settings that are missing there.
-const MISSING_KEYS: [&str; 16] = [
+const MISSING_KEYS: [&str; 11] = [
     "view",
     "geometry",
     "material-dispatch",
     "lighting-pass",
-    "shadows",
-    "shadow-atlas",
-    "shadow-texel",
-    "shadow-bias",
     "shadow-sizes",
-    "shadow-budget",
     "light-radius",
     "sun-angle",
     "ambient-occlusion",
@@ -37,12 +32,22 @@ const MISSING_KEYS: [&str; 16] = [
     "gaze-shift",
 ];
 
+/// Choices that are missing there, of settings that are not: key and name.
+const MISSING_NAMES: [(&str, &str); 1] = [("shadows", "contact")];
+
 impl Setting {
     /// Whether the setting has an effect on devices that offer only
     /// [`Gpu::reduced_limits`](crate::Gpu::reduced_limits).
     #[must_use]
     pub fn is_in_reduced_set(&self) -> bool {
         !MISSING_STAGES.contains(&self.stage) && !MISSING_KEYS.contains(&self.key)
+    }
+
+    /// Whether such devices offer a choice of this name, where the setting is a choice and has an
+    /// effect there.
+    #[must_use]
+    pub fn has_name_in_reduced_set(&self, name: &str) -> bool {
+        self.is_in_reduced_set() && !MISSING_NAMES.contains(&(self.key, name))
     }
 }
 
@@ -52,7 +57,11 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
         ("view", s.picture.view == DebugView::Final, "final"),
         ("geometry", s.geometry.path == Geometry::Gbuffer, "gbuffer"),
         ("aa", s.antialiasing.mode == Antialiasing::None, "none"),
-        ("shadows", s.lighting.shadows == Shadows::Off, "off"),
+        (
+            "shadows",
+            s.lighting.shadows != Shadows::Contact,
+            "off, hard or soft",
+        ),
         (
             "ambient-occlusion",
             s.lighting.ambient_occlusion == AmbientOcclusion::Off,
@@ -69,7 +78,7 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
         None => Ok(()),
         Some((name, _, only)) => Err(Error::Setting {
             name,
-            value: "what needs storage buffers or compute shaders, which this device has not"
+            value: "what needs storage buffers, compute shaders or depth that can be read, which this device has not"
                 .to_owned(),
             expected: only,
         }),
@@ -79,6 +88,7 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::Kind;
 
     #[test]
     fn the_names_of_what_is_missing_are_those_of_the_list() {
@@ -87,6 +97,16 @@ mod tests {
         }
         for key in MISSING_KEYS {
             assert!(Settings::ALL.iter().any(|s| s.key == key), "{key}");
+        }
+        for (key, name) in MISSING_NAMES {
+            let setting = Settings::ALL.iter().find(|s| s.key == key).expect(key);
+            let Kind::Choice(names) = setting.kind else {
+                panic!("{key} is no choice");
+            };
+            assert!(names().contains(&name), "{key} {name}");
+            assert!(
+                !setting.has_name_in_reduced_set(name) && setting.has_name_in_reduced_set("off")
+            );
         }
     }
 
@@ -125,5 +145,11 @@ mod tests {
         settings.shading.mode = Shading::Coarse;
         let refused = settings.validate(&limits).expect_err("needs compute");
         assert!(refused.to_string().contains("shading"), "{refused}");
+        settings.shading.mode = Shading::Full;
+        settings.lighting.shadow_atlas = 2048;
+        for (shadows, is_drawn) in [(Shadows::Soft, true), (Shadows::Contact, false)] {
+            settings.lighting.shadows = shadows;
+            assert_eq!(settings.validate(&limits).is_ok(), is_drawn);
+        }
     }
 }

@@ -44,7 +44,7 @@ impl ComputeBackend {
                 &shader::module(gpu, "coarse shading, list", shader),
                 "shade_tiles",
                 &[frame_layout, input_layout, &shade_layout],
-                &shading_constants(gpu, settings),
+                &shading_constants(settings),
             ),
             shade_layout,
             level_numbers: LevelNumbers::new(gpu),

@@ -1,6 +1,5 @@
 //! Levels of coarse shading, and what they ask for.
 
-use crate::gpu::Gpu;
 use crate::shading::lighting_constants;
 use crate::{CoarseBackend, CoarseSample, Composite, Settings};
 
@@ -14,8 +13,8 @@ pub(super) fn needs_lists(settings: &Settings) -> bool {
 }
 
 /// Settings that change the shading shaders.
-pub(super) fn shading_constants(gpu: &Gpu, settings: &Settings) -> Vec<(&'static str, f64)> {
-    let mut constants = lighting_constants(gpu, settings);
+pub(super) fn shading_constants(settings: &Settings) -> Vec<(&'static str, f64)> {
+    let mut constants = lighting_constants(settings);
     let typical = settings.coarse.sample == CoarseSample::Typical;
     constants.push(("TYPICAL", f64::from(u8::from(typical))));
     constants

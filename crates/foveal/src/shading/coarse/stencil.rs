@@ -94,7 +94,7 @@ impl StencilBackend {
                 ..Screen::of_level("tile marks", &marks, "mark")
             },
         );
-        let constants = shading_constants(gpu, settings);
+        let constants = shading_constants(settings);
         let blocks = shader::module(gpu, "coarse shading, draw", shader);
         let shade = shader::screen(
             gpu,

@@ -176,7 +176,7 @@ impl HistoryPasses {
                 "shade_samples",
                 Some(input),
                 &[read, read, light, radiance, write],
-                &lighting_constants(gpu, settings),
+                &lighting_constants(settings),
             ),
             gather: pass(
                 "gathering light",

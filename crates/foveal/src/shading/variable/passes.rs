@@ -117,7 +117,7 @@ impl RatePasses {
                 mapped_at_creation: false,
             })
         };
-        let lighting = lighting_constants(gpu, settings);
+        let lighting = lighting_constants(settings);
         let one_surface = f64::from(u8::from(settings.stage().has_material()));
         Self {
             reproject: looks_around(settings).then(|| {
