@@ -4,6 +4,19 @@ use std::borrow::Cow;
 
 use crate::gltf::BYTE_ORDER_MARK;
 
+/// The bytes of a text as UTF-8 has it: of UTF-16 with a byte order mark, as PowerShell writes it, else
+/// the same.
+pub(super) fn as_utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let unit: fn([u8; 2]) -> u16 = match bytes {
+        [0xFF, 0xFE, ..] => u16::from_le_bytes,
+        [0xFE, 0xFF, ..] => u16::from_be_bytes,
+        _ => return Cow::Borrowed(bytes),
+    };
+    let units = bytes[2..].as_chunks::<2>().0.iter().copied().map(unit);
+    let chars = char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER));
+    Cow::Owned(chars.collect::<String>().into_bytes())
+}
+
 /// Longest name in bytes; longer ones are cut.
 const MAX_NAME: usize = 200;
 

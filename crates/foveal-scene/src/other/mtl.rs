@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde_json::{Value, json};
 
 use super::builder::Builder;
-use super::lines::{Line, lines, name_of, uncommented};
+use super::lines::{Line, as_utf8, lines, name_of, uncommented};
 use crate::{Code, Warning};
 
 /// A material as the file has it.
@@ -43,7 +43,7 @@ const IGNORED: &[&str] = &[
 /// All materials of a file.
 pub(super) fn parse(bytes: &[u8]) -> Vec<Material> {
     let mut all: Vec<Material> = Vec::new();
-    for Line { text, .. } in lines(bytes) {
+    for Line { text, .. } in lines(&as_utf8(bytes)) {
         let (key, rest) = text.split_once(char::is_whitespace).unwrap_or((&text, ""));
         let rest = rest.trim();
         if key.eq_ignore_ascii_case("newmtl") {

@@ -9,6 +9,25 @@ pub(super) fn parsed<T: FromStr>(word: &str) -> Result<T, String> {
         .map_err(|_| not_a_number(word))
 }
 
+/// A whole number, which may be written as one of all numbers: `255.0`, `3e0`.
+pub(super) fn whole<T: FromStr + TryFrom<i64>>(word: &str) -> Result<T, String> {
+    let written_otherwise = |_| {
+        let number: f64 = parsed(word)?;
+        // What is beyond the range of i64 is beyond those of all types here.
+        let whole = (number.fract() == 0.0).then_some(number as i64);
+        let fitting = whole.and_then(|whole| T::try_from(whole).ok());
+        fitting.ok_or_else(|| not_whole::<T>(word))
+    };
+    word.parse().or_else(written_otherwise)
+}
+
+/// What is said of a number that should be a whole one, with few bits.
+fn not_whole<T>(word: &str) -> String {
+    let word: String = word.chars().take(40).collect();
+    let bits = 8 * size_of::<T>();
+    format!("\"{word}\" is not a whole number of {bits} bits")
+}
+
 /// What is said of a word that should be a number.
 pub(super) fn not_a_number(word: &str) -> String {
     let word: String = word.chars().take(40).collect();

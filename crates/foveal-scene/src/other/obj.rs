@@ -12,7 +12,7 @@ use serde_json::json;
 
 use super::builder::{Builder, plain_surface};
 use super::libraries::{MAX_LIBRARIES, Materials, TOO_MANY_LIBRARIES};
-use super::lines::{Line, lines, name_of, uncommented};
+use super::lines::{Line, as_utf8, lines, name_of, uncommented};
 use super::numbers::{not_a_number, parsed};
 use super::polygons::Polygons;
 use super::smoothing::{Corner, Smoothing};
@@ -24,6 +24,9 @@ use crate::{Code, LoadOptions, Warning};
 /// What an object, and a material, takes while it is imported, in bytes.
 const OBJECT_BYTES: u64 = 16 << 10;
 const MATERIAL_BYTES: u64 = 8 << 10;
+
+/// Bytes at the beginning by which text is told from what is none.
+const BYTES_OF_TEXT: usize = 1 << 10;
 
 /// Triangles, lines or points.
 #[derive(Default)]
@@ -90,6 +93,11 @@ pub(super) fn convert(
     options: &LoadOptions,
     resolver: &Resolver<'_>,
 ) -> Result<Converted, Refusal> {
+    let bytes = &as_utf8(bytes)[..];
+    if bytes.iter().take(BYTES_OF_TEXT).any(|&byte| byte == 0) {
+        let cause = "has bytes of 0: it is no text, or UTF-16 without a byte order mark";
+        return Err(cause.to_owned().into());
+    }
     let mut file = File::parse(bytes, options)?;
     if file.shapes + file.not_drawn == 0 && !file.positions.is_empty() {
         file.add_cloud();

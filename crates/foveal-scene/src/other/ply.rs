@@ -70,6 +70,8 @@ pub(super) fn convert(bytes: &[u8], options: &LoadOptions) -> Result<Converted, 
         }
         if has("vertex", "red") || has("vertex", "diffuse_red") {
             attributes["COLOR_0"] = json!(builder.vectors(&list(|v| v.color)));
+        } else if ["r", "g", "b"].iter().all(|key| has("vertex", key)) {
+            attributes["COLOR_0"] = json!(builder.vectors(&list(|v| v.rgb)));
         }
         let is_mapped = UVS.iter().any(|[u, _]| has("vertex", u));
         if is_mapped {
@@ -246,6 +248,8 @@ struct Corner {
     normal: [f32; 3],
     /// Linear.
     color: [f32; 3],
+    /// The same by short names, which may mean something else: a radius.
+    rgb: [f32; 3],
     uv: [f32; 2],
 }
 
@@ -265,9 +269,12 @@ impl PropertyAccess for Corner {
             "nx" => &mut self.normal[0],
             "ny" => &mut self.normal[1],
             "nz" => &mut self.normal[2],
-            "red" | "diffuse_red" => return self.set_color(0, &property, value),
-            "green" | "diffuse_green" => return self.set_color(1, &property, value),
-            "blue" | "diffuse_blue" => return self.set_color(2, &property, value),
+            "red" | "diffuse_red" => return set_color(&mut self.color[0], &property, value),
+            "green" | "diffuse_green" => return set_color(&mut self.color[1], &property, value),
+            "blue" | "diffuse_blue" => return set_color(&mut self.color[2], &property, value),
+            "r" => return set_color(&mut self.rgb[0], &property, value),
+            "g" => return set_color(&mut self.rgb[1], &property, value),
+            "b" => return set_color(&mut self.rgb[2], &property, value),
             _ => {
                 let at = UVS
                     .iter()
@@ -286,11 +293,10 @@ impl PropertyAccess for Corner {
     }
 }
 
-impl Corner {
-    fn set_color(&mut self, at: usize, property: &Property, value: f32) -> PropertyAccessResult {
-        self.color[at] = linear(channel(property, value));
-        PropertyAccessResult::Set
-    }
+/// Sets a colour's channel.
+fn set_color(slot: &mut f32, property: &Property, value: f32) -> PropertyAccessResult {
+    *slot = linear(channel(property, value));
+    PropertyAccessResult::Set
 }
 
 /// A colour's channel from 0 to 1.

@@ -2,11 +2,11 @@
 //! (`%f`, `%g`) write: the crate `ply-rs-bw` refuses `nan`, `-nan(ind)`, `inf`, `1.` and `.5`.
 
 use std::io::{BufRead, Cursor};
-use std::str::{FromStr, SplitAsciiWhitespace};
+use std::str::SplitAsciiWhitespace;
 
 use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyType, ScalarType};
 
-use super::numbers::parsed;
+use super::numbers::{parsed, whole};
 
 /// Reads all elements of a kind.
 pub(super) fn elements<E: PropertyAccess>(
@@ -59,47 +59,58 @@ fn element<E: PropertyAccess>(line: &[u8], kind: &ElementDef) -> Result<E, Strin
 
 fn one(scalar: &ScalarType, words: &mut SplitAsciiWhitespace<'_>) -> Result<Property, String> {
     Ok(match scalar {
-        ScalarType::Char => Property::Char(number(words)?),
-        ScalarType::UChar => Property::UChar(number(words)?),
-        ScalarType::Short => Property::Short(number(words)?),
-        ScalarType::UShort => Property::UShort(number(words)?),
-        ScalarType::Int => Property::Int(number(words)?),
-        ScalarType::UInt => Property::UInt(number(words)?),
-        ScalarType::Float => Property::Float(number(words)?),
-        ScalarType::Double => Property::Double(number(words)?),
+        ScalarType::Char => Property::Char(next(words, whole)?),
+        ScalarType::UChar => Property::UChar(next(words, whole)?),
+        ScalarType::Short => Property::Short(next(words, whole)?),
+        ScalarType::UShort => Property::UShort(next(words, whole)?),
+        ScalarType::Int => Property::Int(next(words, whole)?),
+        ScalarType::UInt => Property::UInt(next(words, whole)?),
+        ScalarType::Float => Property::Float(next(words, parsed)?),
+        ScalarType::Double => Property::Double(next(words, parsed)?),
     })
 }
 
 fn list(scalar: &ScalarType, words: &mut SplitAsciiWhitespace<'_>) -> Result<Property, String> {
     Ok(match scalar {
-        ScalarType::Char => Property::ListChar(numbers(words)?),
-        ScalarType::UChar => Property::ListUChar(numbers(words)?),
-        ScalarType::Short => Property::ListShort(numbers(words)?),
-        ScalarType::UShort => Property::ListUShort(numbers(words)?),
-        ScalarType::Int => Property::ListInt(numbers(words)?),
-        ScalarType::UInt => Property::ListUInt(numbers(words)?),
-        ScalarType::Float => Property::ListFloat(numbers(words)?),
-        ScalarType::Double => Property::ListDouble(numbers(words)?),
+        ScalarType::Char => Property::ListChar(numbers(words, whole)?),
+        ScalarType::UChar => Property::ListUChar(numbers(words, whole)?),
+        ScalarType::Short => Property::ListShort(numbers(words, whole)?),
+        ScalarType::UShort => Property::ListUShort(numbers(words, whole)?),
+        ScalarType::Int => Property::ListInt(numbers(words, whole)?),
+        ScalarType::UInt => Property::ListUInt(numbers(words, whole)?),
+        ScalarType::Float => Property::ListFloat(numbers(words, parsed)?),
+        ScalarType::Double => Property::ListDouble(numbers(words, parsed)?),
     })
 }
 
-fn number<T: FromStr>(words: &mut SplitAsciiWhitespace<'_>) -> Result<T, String> {
-    parsed(words.next().ok_or("has too few numbers")?)
+/// The next word, by what reads it as a number.
+fn next<T>(
+    words: &mut SplitAsciiWhitespace<'_>,
+    read: impl Fn(&str) -> Result<T, String>,
+) -> Result<T, String> {
+    read(words.next().ok_or("has too few numbers")?)
 }
 
 /// As many numbers as the first one says.
-fn numbers<T: FromStr>(words: &mut SplitAsciiWhitespace<'_>) -> Result<Vec<T>, String> {
-    let count: usize = number(words)?;
-    (0..count).map(|_| number(words)).collect()
+fn numbers<T>(
+    words: &mut SplitAsciiWhitespace<'_>,
+    read: impl Fn(&str) -> Result<T, String>,
+) -> Result<Vec<T>, String> {
+    let count: u32 = next(words, whole)?;
+    (0..count).map(|_| next(words, &read)).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::{Code, LoadOptions, Scene, load_bytes};
+    use crate::{Code, LoadOptions, Scene, SceneError, load_bytes};
+
+    fn read(bytes: &[u8]) -> Result<Scene, SceneError> {
+        let no_files = |_: &str| Err("no files".to_owned());
+        load_bytes(bytes, "scan.ply", &LoadOptions::default(), &no_files)
+    }
 
     fn load(bytes: &[u8]) -> Scene {
-        let no_files = |_: &str| Err("no files".to_owned());
-        load_bytes(bytes, "scan.ply", &LoadOptions::default(), &no_files).unwrap()
+        read(bytes).unwrap()
     }
 
     #[test]
@@ -123,5 +134,60 @@ mod tests {
         assert_eq!(text.meshes, binary.meshes);
         assert_eq!(text.warnings, binary.warnings);
         assert_eq!(text.warnings[0].code, Code::TrianglesUnusable);
+    }
+
+    /// A triangle with these colours of its first vertex and this face.
+    fn triangle(color: &str, face: &str) -> String {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+             property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
+             element face 1\nproperty list uchar int vertex_indices\nend_header\n\
+             0 0 0 {color}\n1 0 0 0 0 0\n0 1 0 0 0 0\n{face}\n"
+        )
+    }
+
+    #[test]
+    fn whole_numbers_may_be_written_with_a_point_or_an_exponent() {
+        let plain = load(triangle("255 20 0", "3 0 1 2").as_bytes());
+        assert_eq!(plain.triangle_count(), 1);
+        for (color, face) in [
+            ("255.0 2e1 -0.0", "3.0 0.0 1. 2e0"),
+            ("+255 20. .0", "3 +0 1 2"),
+        ] {
+            let scene = load(triangle(color, face).as_bytes());
+            assert_eq!(scene.meshes, plain.meshes, "{color}");
+            assert_eq!(scene.warnings, []);
+        }
+        for (color, face, cause) in [
+            (
+                "0.5 0 0",
+                "3 0 1 2",
+                "line 13: \"0.5\" is not a whole number of 8 bits",
+            ),
+            (
+                "256 0 0",
+                "3 0 1 2",
+                "line 13: \"256\" is not a whole number of 8 bits",
+            ),
+            (
+                "0 0 0",
+                "3 0 1 2.5",
+                "line 16: \"2.5\" is not a whole number of 32 bits",
+            ),
+            (
+                "0 0 0",
+                "3 0 1 1e30",
+                "line 16: \"1e30\" is not a whole number of 32 bits",
+            ),
+            (
+                "0 0 0",
+                "3 0 1 nan",
+                "line 16: \"nan\" is not a whole number of 32 bits",
+            ),
+            ("0 0 x", "3 0 1 2", "line 13: \"x\" is not a number"),
+        ] {
+            let error = read(triangle(color, face).as_bytes()).unwrap_err();
+            assert!(error.to_string().ends_with(cause), "{error}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Lines that are joined, and what stands around them.
 
 use super::load;
+use crate::{LoadOptions, load_bytes};
 
 #[test]
 fn a_comment_that_ends_in_a_backslash_leaves_the_next_line_alone() {
@@ -64,5 +65,34 @@ fn lines_may_end_in_a_carriage_return_alone() {
             .unwrap_err()
             .to_string();
         assert!(said.ends_with("line 4: \"x\" is not a number"), "{said}");
+    }
+}
+
+#[test]
+fn text_may_be_utf_16_with_a_byte_order_mark() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nmtllib a.mtl\no Dächer 🏠\nusemtl red\nf 1 2 3\n";
+    let material = "newmtl red\nKd 1 0 0\n";
+    let read = |encode: &dyn Fn(&str) -> Vec<u8>| {
+        let library = encode(material);
+        let resolver = |_: &str| Ok(library.clone());
+        load_bytes(&encode(text), "a.obj", &LoadOptions::default(), &resolver)
+    };
+    let plain = read(&|text| text.as_bytes().to_vec()).unwrap();
+    assert_eq!(plain.objects[0].name, "Dächer 🏠");
+    for to_bytes in [u16::to_le_bytes, u16::to_be_bytes] {
+        let encode = |mark: &str, text: &str| -> Vec<u8> {
+            let text = format!("{mark}{text}");
+            text.encode_utf16().flat_map(to_bytes).collect()
+        };
+        let scene = read(&|text| encode("\u{feff}", text)).unwrap();
+        assert_eq!(scene.warnings, []);
+        assert_eq!(scene.meshes, plain.meshes);
+        assert_eq!(scene.materials, plain.materials);
+        assert_eq!(scene.objects, plain.objects);
+        let error = read(&|text| encode("", text)).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "a.obj is not OBJ: has bytes of 0: it is no text, or UTF-16 without a byte order mark"
+        );
     }
 }

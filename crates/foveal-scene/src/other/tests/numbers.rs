@@ -37,3 +37,25 @@ fn a_colour_is_what_follows_the_place() {
     );
     assert_eq!(color("1"), [u16::MAX; 4]);
 }
+
+#[test]
+fn colours_of_a_ply_file_may_have_names_of_one_letter() {
+    let file = |names: &str, values: &str| {
+        let names: Vec<&str> = names.split(' ').collect();
+        let lines: String = (names.iter())
+            .map(|name| format!("property uchar {name}\n"))
+            .collect();
+        let text = format!(
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n{lines}end_header\n1 {values}\n"
+        );
+        let scene = load("points.ply", text.as_bytes(), &[]).unwrap();
+        assert_eq!(scene.warnings, []);
+        scene.meshes[0].vertices[0].color
+    };
+    let (red, white) = ([u16::MAX, 0, 0, u16::MAX], [u16::MAX; 4]);
+    assert_eq!(file("r g b", "255 0 0"), red);
+    // A radius is no colour.
+    assert_eq!(file("r", "7"), white);
+    assert_eq!(file("red green blue r g b", "255 0 0 7 7 7"), red);
+    assert_eq!(file("r g b red green blue", "7 7 7 255 0 0"), red);
+}
