@@ -22,6 +22,15 @@ pub(crate) struct Request {
     pub(crate) tangents_for: Option<TangentUvs>,
 }
 
+impl Request {
+    /// Where the normal texture is read, where tangents are generated for it.
+    pub(crate) fn generated_tangents(&self) -> Option<TangentUvs> {
+        let def = &self.primitive;
+        let generates = def.mode.makes_triangles() && !def.has_tangents();
+        self.tangents_for.filter(|_| generates)
+    }
+}
+
 /// A finished primitive.
 #[derive(Default)]
 pub(crate) struct Built {
@@ -83,14 +92,20 @@ pub(crate) fn build(
     } else {
         normals::smooth(&mut vertices, &indices, |_| true);
     }
-    let generates_tangents = makes_triangles && !def.has_tangents();
-    if let Some(uvs) = request.tangents_for.filter(|_| generates_tangents)
+    let generated = request.generated_tangents();
+    if let Some(uvs) = generated
         && let Some(split) = tangents::generate(&mut vertices, &mut indices, uvs)
     {
         source = split.iter().map(|&i| source[i as usize]).collect();
     }
     let mut shape = morphs::read_shape(def, request.uv_sets, reader, &source, &mut notes)?;
     if let Some(shape) = &mut shape {
+        let targets = shape.targets.iter_mut();
+        for target in targets.filter(|target| target.tangents.is_empty()) {
+            target.tangents = generated.map_or_else(Vec::new, |uvs| {
+                tangents::deltas(&vertices, &indices, uvs, target, flat)
+            });
+        }
         shape.rest.clone_from(&vertices);
         shape.flat = flat;
     }

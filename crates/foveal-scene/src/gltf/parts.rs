@@ -192,7 +192,7 @@ impl Geometry {
             vertices = vertices.saturating_add(made.saturating_mul(morphs));
             corners = corners.saturating_add(made_corners);
             bytes = bytes
-                .saturating_add(made.saturating_mul(vertex_bytes(def)))
+                .saturating_add(made.saturating_mul(vertex_bytes(request)))
                 .saturating_add(made_corners.saturating_mul(INDEX_BYTES))
                 .saturating_add(stroke_bytes(def, made_corners));
             let (limit, most) = (options.max_vertices, vertices.max(corners / 6));
@@ -235,10 +235,16 @@ fn stroke_bytes(def: &PrimitiveDef, corners: u64) -> u64 {
 
 /// Memory per vertex while a mesh is built: the vertex, its position as read and in its cloud, what
 /// deforms it.
-fn vertex_bytes(def: &PrimitiveDef) -> u64 {
+fn vertex_bytes(request: &Request) -> u64 {
+    let def = &request.primitive;
     let vertex = size_of::<Vertex>() as u64;
     let joints = def.attributes.joints.iter().flatten().count() as u64;
-    let deltas = |t: &Attributes| [t.position, t.normal, t.tangent].iter().flatten().count();
+    let generates = request.generated_tangents().is_some();
+    let deltas = |t: &Attributes| {
+        let given = [t.position, t.normal, t.tangent];
+        let made = usize::from(generates && t.tangent.is_none());
+        given.iter().flatten().count() + made
+    };
     let targets = def.targets.iter().map(|t| {
         let further = 8 * t.uv.len().min(2) + 16 * usize::from(t.color.is_some());
         (12 * deltas(t) + further) as u64

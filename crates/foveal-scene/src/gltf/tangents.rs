@@ -10,8 +10,9 @@ use std::collections::HashMap;
 use bevy_mikktspace::{Geometry, TangentSpace};
 use glam::{Mat2, Mat3, Vec2, Vec3};
 
+use super::normals;
 use crate::Vertex;
-use crate::pose::turn_of_uvs;
+use crate::pose::{MorphTarget, turn_of_uvs};
 
 /// Most triangles around a vertex: bounds the recursion.
 const MAX_FAN: u64 = 1024;
@@ -232,25 +233,35 @@ fn is_tame(vertices: &[Vertex], solid: &[u32], uv_slot: usize) -> bool {
     work <= MAX_WORK.max(solid.len() as u64 * 64)
 }
 
+/// What the corners of a triangle add to tangents: the direction in which u grows, along the surface at
+/// each corner and by its angle; and whether u and v are as the triangle runs.
+fn shares(of: [&Vertex; 3], uvs: TangentUvs) -> ([Vec3; 3], bool) {
+    let p = of.map(|v| Vec3::from(v.position));
+    let uv = of.map(|v| uvs.of(v));
+    let (d1, d2) = (uv[1] - uv[0], uv[2] - uv[0]);
+    let area = d1.perp_dot(d2);
+    let along = ((p[1] - p[0]) * d2.y - (p[2] - p[0]) * d1.y) * area.signum();
+    let share = |k: usize| {
+        let normal = Vec3::from(of[k].normal);
+        let flat = |v: Vec3| v.reject_from_normalized(normal).normalize_or_zero();
+        let (e1, e2) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
+        let angle = flat(e1).dot(flat(e2)).clamp(-1.0, 1.0).acos();
+        flat(along) * angle
+    };
+    (std::array::from_fn(share), area > 0.0)
+}
+
 /// Angle-weighted means per welded vertex and orientation; one tangent per corner.
 fn means(vertices: &[Vertex], solid: &[u32], uvs: TangentUvs) -> Vec<[f32; 4]> {
     let mut sums: HashMap<([u32; 8], bool), Vec3> = HashMap::new();
     let mut corners = Vec::with_capacity(solid.len());
     for t in solid.chunks_exact(3) {
         let of = [t[0], t[1], t[2]].map(|i| &vertices[i as usize]);
-        let p = of.map(|v| Vec3::from(v.position));
-        let uv = of.map(|v| uvs.of(v));
-        let (d1, d2) = (uv[1] - uv[0], uv[2] - uv[0]);
-        let area = d1.perp_dot(d2);
-        let along = ((p[1] - p[0]) * d2.y - (p[2] - p[0]) * d1.y) * area.signum();
-        for k in 0..3 {
-            let normal = Vec3::from(of[k].normal);
-            let flat = |v: Vec3| v.reject_from_normalized(normal).normalize_or_zero();
-            let (e1, e2) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
-            let angle = flat(e1).dot(flat(e2)).clamp(-1.0, 1.0).acos();
-            let key = (weld_key(of[k], uvs.slot), area > 0.0);
-            *sums.entry(key).or_default() += flat(along) * angle;
-            corners.push((key, normal));
+        let (shares, is_along) = shares(of, uvs);
+        for (vertex, share) in of.into_iter().zip(shares) {
+            let key = (weld_key(vertex, uvs.slot), is_along);
+            *sums.entry(key).or_default() += share;
+            corners.push((key, Vec3::from(vertex.normal)));
         }
     }
     corners
@@ -261,6 +272,52 @@ fn means(vertices: &[Vertex], solid: &[u32], uvs: TangentUvs) -> Vec<[f32; 4]> {
                 .and_then(|s| s.try_normalize())
                 .unwrap_or_else(|| normal.any_orthonormal_vector());
             tangent.extend(if key.1 { -1.0 } else { 1.0 }).to_array()
+        })
+        .collect()
+}
+
+/// Differences that a morph target which gives none makes to generated tangents, one per vertex: those
+/// of the means at rest and where it is in full effect (glTF 2.0, section 3.7.2.2). `flat`: normals are
+/// those of the planes. Empty where it moves nothing that tangents follow.
+pub(crate) fn deltas(
+    vertices: &[Vertex],
+    indices: &[u32],
+    uvs: TangentUvs,
+    target: &MorphTarget,
+    flat: bool,
+) -> Vec<Vec3> {
+    let moved_uvs = &target.uvs[uvs.slot];
+    if target.positions.is_empty() && target.normals.is_empty() && moved_uvs.is_empty() {
+        return Vec::new();
+    }
+    let mut morphed = vertices.to_vec();
+    for (i, vertex) in morphed.iter_mut().enumerate() {
+        let delta = |list: &[Vec3]| list.get(i).copied().unwrap_or(Vec3::ZERO);
+        let normal = Vec3::from(vertex.normal) + delta(&target.normals);
+        vertex.position = (Vec3::from(vertex.position) + delta(&target.positions)).to_array();
+        vertex.normal = normal.normalize_or(vertex.normal.into()).to_array();
+        let moved = moved_uvs.get(i).copied().unwrap_or(Vec2::ZERO);
+        vertex.uv[uvs.slot] = (Vec2::from(vertex.uv[uvs.slot]) + moved).to_array();
+    }
+    if flat {
+        normals::flat(&mut morphed);
+    }
+    let means = |vertices: &[Vertex]| {
+        let mut sums = vec![Vec3::ZERO; vertices.len()];
+        for t in indices.chunks_exact(3) {
+            let (shares, _) = shares([t[0], t[1], t[2]].map(|i| &vertices[i as usize]), uvs);
+            t.iter()
+                .zip(shares)
+                .for_each(|(&i, share)| sums[i as usize] += share);
+        }
+        sums.into_iter().map(Vec3::try_normalize)
+    };
+    // Where the triangles of a vertex tell no direction, its tangent stays.
+    let pairs = means(vertices).zip(means(&morphed));
+    pairs
+        .map(|(before, now)| {
+            now.zip(before)
+                .map_or(Vec3::ZERO, |(now, before)| now - before)
         })
         .collect()
 }

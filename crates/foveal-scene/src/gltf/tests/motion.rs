@@ -318,6 +318,41 @@ fn morph_targets_move_colours_and_texture_coordinates() {
     assert!(warnings(&file.load()).contains(text));
 }
 
+#[test]
+fn generated_tangents_follow_morph_targets_that_give_none() {
+    let mut file = File::with_triangle();
+    file.attribute("TEXCOORD_0", &[0., 0., 1., 0., 0., 1.], "VEC2");
+    let picture = image::RgbaImage::from_pixel(1, 1, [128, 128, 255, 255].into());
+    let texture = file.texture(&picture);
+    file.material(json!({ "normalTexture": { "index": texture } }));
+    // A quarter turn; u where v was; a fold out of the plane; a quarter turn with tangents of its own.
+    let turned = file.floats(&[0., 0., 0., -1., 1., 0., -1., -1., 0.], "VEC3");
+    let mapped = file.floats(&[0., 0., -1., 1., 1., -1.], "VEC2");
+    let folded = file.floats(&[0., 0., 0., -1., 0., 2., 0., 0., 0.], "VEC3");
+    let none = file.floats(&[0.; 9], "VEC3");
+    file.primitive()["targets"] = json!([
+        { "POSITION": turned },
+        { "TEXCOORD_0": mapped },
+        { "POSITION": folded },
+        { "POSITION": turned, "TANGENT": none },
+    ]);
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    for (weights, tangent) in [
+        ([0., 0., 0., 0.], [1., 0., 0.]),
+        ([1., 0., 0., 0.], [0., 1., 0.]),
+        ([0.5, 0., 0., 0.], [half, half, 0.]),
+        ([0., 1., 0., 0.], [0., 1., 0.]),
+        ([0., 0., 1., 0.], [0., 0., 1.]),
+        ([0., 0., 0., 1.], [1., 0., 0.]),
+    ] {
+        file.json["meshes"][0]["weights"] = json!(weights);
+        let scene = file.load();
+        for vertex in &scene.meshes[scene.instances[0].mesh as usize].vertices {
+            assert!(near(&vertex.tangent[..3], &tangent), "{:?}", vertex.tangent);
+        }
+    }
+}
+
 /// A cube under a node 1 with this transform, by joint 2 or rigid; with its own normals and
 /// tangents, or with flat normals that are made for it.
 fn cube(root: &Value, skinned: bool, own_normals: bool) -> File {
