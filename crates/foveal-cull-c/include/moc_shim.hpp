@@ -1,6 +1,6 @@
 // Masked Occlusion Culling's calls on foveal-cull, to try it in a program that has them.
 //
-// Include this instead of MaskedOcclusionCulling.h and link foveal_cull_c. What differs:
+// For C++11. Include this instead of MaskedOcclusionCulling.h and link foveal_cull_c. What differs:
 //
 // - RenderTriangles collects; the frame is rasterized by the first test after it. Alternating draws and
 //   tests gives right answers, but each first test rasterizes everything that was drawn since ClearBuffer.
@@ -402,7 +402,8 @@ private:
     /// A mesh that was baked before, or is baked now; null if it cannot be.
     Known *known(const Source &s) {
         const Key key = key_of(s);
-        if (const auto found = meshes_.find(key); found != meshes_.end()) {
+        const auto found = meshes_.find(key);
+        if (found != meshes_.end()) {
             return &found->second;
         }
         std::vector<unsigned int> triangles(s.triangles, s.triangles + 3 * static_cast<std::size_t>(s.count));
