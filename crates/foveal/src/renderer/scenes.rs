@@ -116,9 +116,10 @@ impl Renderer {
     /// which objects are visible, and the numbers of materials. Their textures and alpha modes, and
     /// what kinds of reflection they have, stay as [`Renderer::set_scene`] found them. The pose
     /// before it becomes the previous one, from which motion vectors are taken; a frame that follows
-    /// another without a new pose shows nothing in motion. What is kept from frame to frame is given
-    /// up where things had moved with the pose before and no frame has shown it: call this once a
-    /// frame, with the pose that it shows.
+    /// another without a new pose shows nothing in motion. With the pose of the frame before all
+    /// rests, unless the scene has meshes that deform. What is kept from frame to frame is given up
+    /// where things had moved with the pose before and no frame has shown it: call this once a frame,
+    /// with the pose that it shows.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`]. Call it again then: until it succeeds, objects and lights have the
@@ -139,11 +140,14 @@ impl Renderer {
             .stages
             .shadows
             .scene_moved(&change.boxes, &self.scene, wants_places);
-        if let Some(variable) = &mut self.stages.variable {
-            variable.scene_moved();
-        }
-        if let Some(coarse) = &mut self.stages.coarse {
-            coarse.scene_moved();
+        // The same pose once more shows nothing else.
+        if change.moves || change.lights_before != self.scene.lights {
+            if let Some(variable) = &mut self.stages.variable {
+                variable.scene_moved();
+            }
+            if let Some(coarse) = &mut self.stages.coarse {
+                coarse.scene_moved();
+            }
         }
         if let Some(history) = self.stages.history() {
             if change.moves {

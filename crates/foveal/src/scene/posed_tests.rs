@@ -137,6 +137,30 @@ fn sub_samples_and_culling_follow_the_pose() {
     );
 }
 
+/// A host may set the pose before each frame, whether or not anything moves.
+#[test]
+fn a_pose_that_is_set_again_and_again_leaves_the_picture_still() {
+    let room = foveal_generate::cornell();
+    let camera = room.cameras[0].clone();
+    for (shading, source) in [
+        (Shading::Coarse, RateSource::Foveated),
+        (Shading::Variable, RateSource::Content),
+    ] {
+        let settings = settings().with(|s| {
+            s.shading.mode = shading;
+            s.coarse.history = true;
+            s.coarse.source = source;
+        });
+        let mut film = Film::new(&room, &settings);
+        let shown = at_rest(&mut film, &camera, &settings);
+        for frame in 0..ROUND {
+            block_on(film.renderer.update_pose(&room)).expect("it fits");
+            film.draw(&camera);
+            assert!(picture(&film.renderer) == shown, "{shading:?}, {frame}");
+        }
+    }
+}
+
 /// One kind of change at a time: nothing else tells the stages that something has changed.
 #[test]
 fn each_change_alone_is_seen_and_shadows_follow() {
