@@ -270,7 +270,8 @@ impl Renderer {
         trap.finish().await?;
         self.scene.geometry.take_readable(readable?);
         match change {
-            Change::Nothing | Change::Frame => {}
+            Change::Nothing => {}
+            Change::Frame => self.stages.see_strokes(settings),
             Change::Light => self.stages.forget_light(),
             Change::Size => self.resize(settings).await?,
             Change::Stages => return self.make_stages(settings).await,

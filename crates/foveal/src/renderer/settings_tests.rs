@@ -5,7 +5,7 @@ use foveal_generate as generate;
 use glam::Mat4;
 use pollster::block_on;
 
-use crate::testing::{Film, gpu, picture, rendered, small};
+use crate::testing::{Film, add, gpu, picture, rendered, small};
 use crate::{Culling, Error, Geometry, Output, RateImage, RateSource, Settings, Shading, Stereo};
 
 #[test]
@@ -119,6 +119,33 @@ fn culling_that_is_frozen_stays_so_through_other_settings() {
     film.renderer.freeze_culling(false);
     film.draw(&turned);
     assert!(found(&film) != expected);
+}
+
+/// Wider lines have other contrasts around them.
+#[test]
+fn rates_follow_the_width_of_lines() {
+    let mut scene = generate::cornell();
+    let (strokes, _) = crate::forward::strokes_tests::strokes();
+    let camera = scene.cameras[0].clone();
+    let ahead = camera.world_from_view * Mat4::from_translation(glam::Vec3::new(0.0, 0.0, -2.0));
+    for mesh in strokes.meshes {
+        add(&mut scene, mesh, strokes.materials[0].clone(), ahead);
+    }
+    let thin = small(96, 64).with(|s| {
+        s.shading.mode = Shading::Variable;
+        s.coarse.source = RateSource::Content;
+    });
+    let wide = thin.clone().with(|s| s.geometry.line_width_px = 9.0);
+    let at_rest = |film: &mut Film| {
+        (0..8).for_each(|_| drop(film.draw(&camera)));
+        picture(&film.renderer)
+    };
+    let mut film = Film::new(&scene, &thin);
+    let before = at_rest(&mut film);
+    block_on(film.renderer.set_settings(&wide)).expect("they fit");
+    let after = at_rest(&mut film);
+    assert!(before != after);
+    assert!(after == at_rest(&mut Film::new(&scene, &wide)));
 }
 
 /// What makes a renderer holds it on the stack several times, without optimization.

@@ -45,6 +45,16 @@ impl Stages {
         self.coarse.as_mut()?.history.as_mut()
     }
 
+    /// The next frame has the points and lines of these settings, which may be of other widths.
+    pub(super) fn see_strokes(&mut self, settings: &Settings) {
+        let widths = |s: &Settings| (s.geometry.point_size_px, s.geometry.line_width_px);
+        if widths(&self.settings) != widths(settings)
+            && let Some(variable) = &mut self.variable
+        {
+            variable.scene_moved();
+        }
+    }
+
     /// What is known of the light is out of date.
     pub(super) fn forget_light(&mut self) {
         if let Some(variable) = &mut self.variable {
