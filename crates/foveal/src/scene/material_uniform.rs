@@ -144,10 +144,16 @@ impl MaterialUniform {
         }
     }
 
-    /// Whether only the base colour or emission is another than before.
+    /// Whether only emission, or the base colour of what is no metal, is another than before: light
+    /// that is kept holds for both. A metal's base colour is in the light that it mirrors.
     pub(super) fn differs_in_color_alone(&self, before: &Self) -> bool {
+        let is_metal = self.metallic > 0.0;
         let same = Self {
-            base_color: before.base_color,
+            base_color: if is_metal {
+                self.base_color
+            } else {
+                before.base_color
+            },
             emissive: before.emissive,
             ..*self
         };

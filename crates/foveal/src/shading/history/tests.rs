@@ -348,6 +348,30 @@ fn daylight_in_lux_is_kept_whole() {
 }
 
 #[test]
+fn metals_of_another_colour_mirror_light_of_it_at_once() {
+    let mut scene = generate::cornell();
+    let paint = |scene: &mut Scene, color: [f32; 4]| {
+        for material in &mut scene.materials {
+            (material.metallic, material.roughness) = (1.0, 0.5);
+            material.base_color = color.into();
+        }
+    };
+    paint(&mut scene, [0.9, 0.0, 0.0, 1.0]);
+    let camera = scene.cameras[0].clone();
+    let settings = kept().with(|s| s.lighting.environment = crate::EnvironmentSource::None);
+    let mut film = Film::new(&scene, &settings);
+    for _ in 0..3 {
+        film.draw(&camera);
+    }
+    paint(&mut scene, [0.0, 0.9, 0.0, 1.0]);
+    pollster::block_on(film.renderer.update_pose(&scene)).expect("the pose fits");
+    film.draw(&camera);
+    let anew = total(&anew(&scene, &camera, &settings));
+    let ratio = total(&seen(&film.renderer)) / anew;
+    assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+}
+
+#[test]
 fn frames_are_the_same_every_time() {
     let scene = scene();
     let camera = &scene.cameras[0];
