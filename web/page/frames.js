@@ -2,6 +2,7 @@
 
 import { Camera } from './camera.js';
 import { applySettings, framesToSettle, tellSettings } from './chooser.js';
+import { pictureSize } from './eyes.js';
 import { showFigures, showFooting } from './figures.js';
 import { gazeAt } from './gaze.js';
 import { writeLink } from './link.js';
@@ -9,20 +10,14 @@ import { $, page, redraw, say, wait } from './page.js';
 import { hasStopped, isLost, loadRenderer, orLost, orStopped } from './renderer.js';
 import { showFirst, showScene } from './scenes.js';
 
-/** Even widths: side by side each eye has half. */
-function pictureSize() {
-  const box = $('stage').getBoundingClientRect();
+/** The size to draw at; the canvas takes it over with the picture, and shows the one before until then. */
+function sizeToDraw() {
   const ratio = Math.min(devicePixelRatio || 1, 2) * (page.scale === 'auto' ? page.resolution.scale : Number(page.scale));
-  return { width: Math.max(16, 2 * Math.round((box.width * ratio) / 2)), height: Math.max(16, Math.round(box.height * ratio)) };
+  return pictureSize($('stage').getBoundingClientRect(), ratio, page.settings.sides);
 }
 
 async function drawFrame() {
-  const request = { camera: page.camera.place(), split: page.split, ...pictureSize() };
-  const canvas = $('picture');
-  if (canvas.width !== request.width || canvas.height !== request.height) {
-    canvas.width = request.width;
-    canvas.height = request.height;
-  }
+  const request = { camera: page.camera.place(), split: page.split, ...sizeToDraw() };
   tellSettings();
   page.unsettled = page.stale ? framesToSettle() : page.unsettled;
   page.stale = false;
@@ -158,6 +153,6 @@ function follow(event) {
   if (!page.gaze || !page.technique.gaze || page.camera.pointers.size) return;
   const box = $('stage').getBoundingClientRect();
   const place = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
-  page.settings.set('chosen', 'gaze', gazeAt(place, page.settings.sides.chosen));
+  page.settings.set('chosen', 'gaze', gazeAt(place, page.settings.sides.chosen, $('picture').width));
   applySettings();
 }

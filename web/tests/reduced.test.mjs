@@ -79,6 +79,29 @@ test('shadows are those of WebGPU', async (t) => {
   assert.ok(error < 0.01 && flip(files[2], files[1]) > 0.05, `FLIP to WebGPU is ${error}`);
 });
 
+test('the last picture stays while one of another size is drawn, and where that fails', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
+  await settled(page);
+  // Of what the screen shows there; a canvas that was cleared is black.
+  const brightness = async () => {
+    const png = await page.locator('#picture').screenshot();
+    return page.evaluate(async (text) => {
+      const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${text}`)).blob());
+      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+      context.drawImage(bitmap, 0, 0);
+      const { data } = context.getImageData(bitmap.width / 4, bitmap.height / 2, bitmap.width / 8, 20);
+      return data.reduce((sum, v, i) => sum + (i % 4 === 3 ? 0 : v), 0) / data.length;
+    }, png.toString('base64'));
+  };
+  const before = await brightness();
+  await page.evaluate(() => { window.foveal.viewer.draw = async () => { throw 'a test'; }; });
+  await page.setViewportSize({ width: SMALL.width + 100, height: SMALL.height });
+  await page.locator('.message').waitFor();
+  assert.ok((await brightness()) > 0.5 * before, `${await brightness()} of ${before}`);
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
 test('both eyes in one submission, by discarding, give the picture of two passes', async () => {
   const { page, said } = await site.visit('#scene=demo:1000&technique=stereo&scale=0.5', SMALL);
   for (const show of ['side-by-side', 'anaglyph', 'anaglyph-dubois']) {
