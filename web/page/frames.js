@@ -17,10 +17,11 @@ function sizeToDraw() {
 }
 
 async function drawFrame() {
+  page.unsettled = page.stale ? framesToSettle() : page.unsettled;
+  // A frame that fails is not asked for again before the next change.
+  page.stale = false;
   const request = { camera: page.camera.place(), split: page.split, ...sizeToDraw() };
   tellSettings();
-  page.unsettled = page.stale ? framesToSettle() : page.unsettled;
-  page.stale = false;
   if (page.moved) writeLink();
   page.moved = false;
   const cost = JSON.parse(await orLost(() => page.viewer.draw(JSON.stringify(request))));

@@ -10,6 +10,36 @@ let site;
 before(async () => { site = await open(); });
 after(() => site.close());
 
+test('a message of a setting that cannot be read comes once, and can be closed', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
+  await settled(page);
+  await page.evaluate(() => {
+    window.messages = 0;
+    new MutationObserver(() => { window.messages += 1; }).observe(document.getElementById('messages'), { childList: true });
+  });
+  await page.locator('#settings details', { has: page.locator('#chosen-display') }).locator('summary').click();
+  await page.locator('#chosen-display').fill('sofa');
+  await page.locator('#chosen-display').press('Enter');
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /sofa/);
+  await page.waitForTimeout(1000);
+  assert.equal(await page.evaluate(() => window.messages), 1);
+  await page.locator('.message button').click();
+  await page.waitForTimeout(500);
+  assert.equal(await page.locator('.message').count(), 0);
+  // It is said again with the next change, until it can be read.
+  await page.locator('#picture').focus();
+  await page.keyboard.press('ArrowLeft');
+  await page.locator('.message').waitFor();
+  await page.locator('#chosen-display').fill('h60');
+  await page.locator('#chosen-display').press('Enter');
+  await page.locator('.message button').click();
+  await settled(page);
+  assert.equal(await page.locator('.message').count(), 0);
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
 test('a picture has every pixel of a box of odd width', async () => {
   const { page, said } = await site.visit('#scene=cornell&scale=1&technique=stereo', SMALL);
   const size = async () => {
