@@ -101,6 +101,8 @@ async function restart(cause, whileDrawing = false) {
     place = null;
   }
   if (whileDrawing) page.stoppedAt = page.scene;
+  // Nothing in its memory can be relied on, not even to free it.
+  page.viewer = null;
   await reopen('Starting the renderer again…', loadRenderer, place);
 }
 page.restart = restart;
@@ -123,8 +125,10 @@ async function reopen(words, load, place) {
 /** Opens the device on a canvas of its own: one that had a device cannot get another kind. */
 export async function openViewer() {
   const old = $('picture');
+  const hasFocus = document.activeElement === old;
   const canvas = old.cloneNode();
   old.replaceWith(canvas);
+  if (hasFocus) canvas.focus();
   // Nobody tells wgpu that a WebGL context is gone: its frame would never end.
   page.lost = null;
   canvas.addEventListener('webglcontextlost', () => {
@@ -132,6 +136,7 @@ export async function openViewer() {
     page.fail?.(page.lost);
     redraw();
   });
+  letGo(page.viewer);
   page.viewer = null;
   page.viewer = await orStopped(page.Viewer.open(canvas));
   const touched = page.camera?.touched;
@@ -147,6 +152,15 @@ export async function openViewer() {
   const { name, backend } = JSON.parse(page.viewer.adapter());
   const kind = backend === 'gl' ? 'WebGL 2' : 'WebGPU';
   $('adapter').textContent = `${kind}${name ? ` on ${name}` : ''} (${backend})`;
+}
+
+/** Frees a viewer whose device is gone, with all that it has on the device. */
+function letGo(viewer) {
+  try {
+    viewer?.free();
+  } catch {
+    // A call of it never ends, and holds on to it.
+  }
 }
 
 /** The gaze goes where the pointer is. */

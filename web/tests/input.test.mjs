@@ -40,6 +40,25 @@ test('a message of a setting that cannot be read comes once, and can be closed',
   await page.context().close();
 });
 
+test('a lost device keeps the keyboard where it was, and nothing of the one before', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
+  await settled(page);
+  await page.locator('#picture').focus();
+  await page.evaluate(() => {
+    window.before = window.foveal.viewer;
+    window.before.lose_device();
+    window.foveal.stale = true;
+  });
+  await page.locator('.message').waitFor();
+  await settled(page);
+  assert.equal(await page.evaluate(() => window.before.__wbg_ptr), 0);
+  const eye = () => page.evaluate(() => window.foveal.camera.yaw);
+  const turned = await eye();
+  await page.keyboard.press('ArrowLeft');
+  assert.notEqual(await eye(), turned);
+  await page.context().close();
+});
+
 test('a picture has every pixel of a box of odd width', async () => {
   const { page, said } = await site.visit('#scene=cornell&scale=1&technique=stereo', SMALL);
   const size = async () => {
