@@ -149,6 +149,8 @@ export async function openViewer() {
   camera.orbit = $('orbit').checked;
   page.camera = camera;
   canvas.addEventListener('pointermove', follow);
+  // A finger that moves turns the camera: where it is lifted the gaze goes, as where it taps.
+  canvas.addEventListener('pointerup', follow);
   const { name, backend } = JSON.parse(page.viewer.adapter());
   const kind = backend === 'gl' ? 'WebGL 2' : 'WebGPU';
   $('adapter').textContent = `${kind}${name ? ` on ${name}` : ''} (${backend})`;

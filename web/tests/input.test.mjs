@@ -59,6 +59,21 @@ test('a lost device keeps the keyboard where it was, and nothing of the one befo
   await page.context().close();
 });
 
+test('the gaze goes where a finger taps', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=coarse', SMALL);
+  await settled(page);
+  const box = await page.locator('#stage').boundingBox();
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, points) => session.send('Input.dispatchTouchEvent', { type, touchPoints: points });
+  await touch('touchStart', [{ x: box.x + 0.25 * box.width, y: box.y + 0.75 * box.height }]);
+  await touch('touchEnd', []);
+  await page.waitForFunction(() => window.foveal.settings.sides.chosen.gaze[0] !== 0.5);
+  const gaze = await page.evaluate(() => window.foveal.settings.sides.chosen.gaze);
+  assert.ok(Math.abs(gaze[0] - 0.25) < 0.01 && Math.abs(gaze[1] - 0.75) < 0.01, String(gaze));
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
 test('a picture has every pixel of a box of odd width', async () => {
   const { page, said } = await site.visit('#scene=cornell&scale=1&technique=stereo', SMALL);
   const size = async () => {
