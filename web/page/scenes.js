@@ -7,6 +7,9 @@ import { hasStopped, isLost, orLost, rehearse } from './renderer.js';
 
 const SCENES = ['demo', 'cornell', 'materials-grid', 'alpha', 'demo:1000'];
 
+/** Bytes that a file may have, as in the reader: a larger one is not fetched into memory to be refused. */
+const MOST_BYTES = 512 * 2 ** 20;
+
 /** The user's files that have been shown, by name. Their bytes are read anew each time. */
 const files = new Map();
 
@@ -64,6 +67,12 @@ function showAlone(scene) {
 }
 
 async function showFile(file) {
+  if (file.size > MOST_BYTES) {
+    const megabytes = (bytes) => `${(bytes / 1e6).toFixed(1)} MB`;
+    say(`${file.name} is too large: it has ${megabytes(file.size)}, the limit is ${megabytes(MOST_BYTES)}; what is shown stays`);
+    $('scene').value = page.scene.name;
+    return;
+  }
   let bytes;
   try {
     bytes = await file.arrayBuffer();

@@ -74,6 +74,23 @@ test('the gaze goes where a finger taps', async () => {
   await page.context().close();
 });
 
+test('a file that is too large is refused before it is read', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
+  await settled(page);
+  await page.evaluate(() => {
+    const mebibyte = new Blob([new Uint8Array(1 << 20)]);
+    Blob.prototype.arrayBuffer = () => { throw new Error('it was read'); };
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File(Array(513).fill(mebibyte), 'huge.glb'));
+    window.dispatchEvent(new DragEvent('drop', { dataTransfer, bubbles: true, cancelable: true }));
+  });
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /huge\.glb is too large: it has 537\.9 MB, the limit is 536\.9 MB/);
+  assert.equal(await page.locator('#scene').inputValue(), 'cornell');
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
 test('a picture has every pixel of a box of odd width', async () => {
   const { page, said } = await site.visit('#scene=cornell&scale=1&technique=stereo', SMALL);
   const size = async () => {
