@@ -50,16 +50,21 @@ function hasOtherPixels() {
   return pixelRatio !== before;
 }
 
+/** The last frame failed: the next one waits for a change, even where frames are drawn all the time. */
+let failed = false;
+
 let last = performance.now();
 export async function turn(now) {
   const seconds = (now - last) / 1000;
   last = now;
-  if (page.camera.step(seconds) || hasOtherPixels() || page.always) redraw();
+  if (page.camera.step(seconds) || hasOtherPixels() || (page.always && !failed)) redraw();
   if ((page.stale || page.unsettled > 0 || !page.measured) && !page.busy) {
     page.busy = true;
     try {
       await drawFrame();
+      failed = false;
     } catch (cause) {
+      failed = true;
       page.unsettled = 0;
       page.measured = true;
       await mend(cause);
