@@ -1,7 +1,6 @@
 //! Where the page stands, as it says it.
 
 use foveal_scene::{Camera, Projection};
-use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// A perspective view.
@@ -80,6 +79,8 @@ impl Place {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
 
     /// What the page draws of a scene's camera.

@@ -77,8 +77,10 @@ impl Side {
         }
         let frame = Frame::new(camera).with_previous(self.previous.as_ref());
         let stats = self.renderer.render(&frame).await;
+        let stats = stats.map_err(|cause| cause.to_string())?;
+        // One that failed was seen from nowhere.
         self.previous = Some(camera.clone());
-        stats.map_err(|cause| cause.to_string())
+        Ok(stats)
     }
 
     /// Pixels that the last frame drew, of all eyes' pictures.
