@@ -1,7 +1,8 @@
 //! Scenes by name, and from dropped files.
 
 use foveal_generate as generate;
-use foveal_scene::{Camera, LoadOptions, Scene, load_bytes};
+use foveal_scene::{Aabb, Camera, LoadOptions, Scene, load_bytes};
+use glam::Vec3;
 use serde::Serialize;
 
 use crate::camera::Place;
@@ -21,16 +22,19 @@ pub(crate) struct Shown {
 
 impl Shown {
     pub(crate) fn of(scene: &Scene) -> Self {
-        let bounds = scene.bounds();
-        let radius_m = 0.5 * (bounds.max - bounds.min).length();
+        let bounds = match scene.bounds() {
+            // As the overview camera takes it.
+            empty if empty.is_empty() => Aabb::new(-Vec3::ONE, Vec3::ONE),
+            bounds => bounds,
+        };
+        let radius_m = bounds.half_extent().length();
         let camera: Camera = match scene.cameras.first() {
             Some(camera) => camera.clone(),
             None => scene.overview_camera(),
         };
-        let middle = 0.5 * (bounds.min + bounds.max);
         Self {
             name: scene.name.clone(),
-            camera: Place::of(&camera, camera.eye().distance(middle).max(1e-3)),
+            camera: Place::of(&camera, camera.eye().distance(bounds.center()).max(1e-3)),
             radius_m,
             triangles: scene.triangle_count(),
             objects: scene.objects.len(),
