@@ -24,3 +24,12 @@ test('a scene without geometry is shown, and its camera moves', async () => {
   assert.deepEqual(said, []);
   await page.context().close();
 });
+
+test('what comes from a file that a page cannot name is not offered', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25&technique=culling&right.environment=image', SMALL);
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /right\.environment=image/);
+  const offered = await page.evaluate(() => window.foveal.settings.table.flatMap(({ names }) => names));
+  assert.ok(offered.includes('sky') && !offered.includes('image'), String(offered));
+  await page.context().close();
+});
