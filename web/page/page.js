@@ -24,7 +24,7 @@ export const page = {
   resolution: new Resolution(),
   always: false,
   gaze: true,
-  // What is shown: a generated scene's name, or a dropped file's name and bytes.
+  // What is shown: a generated scene's name, or a dropped file's name and bytes, with those of files beside it by name.
   scene: { name: 'demo', bytes: null },
   home: null,
   // What the address asked for, its scene and the camera's place in it: shown first.

@@ -13,12 +13,12 @@ async function webAssembly(renderer) {
   return new Uint8Array(await response.arrayBuffer());
 }
 
-addEventListener('message', async ({ data: { renderer, name, bytes } }) => {
+addEventListener('message', async ({ data: { renderer, name, bytes, beside } }) => {
   try {
     const module = await import(renderer);
     await module.default({ module_or_path: capped(await webAssembly(renderer), MOST_PAGES) });
     postMessage({ ready: true });
-    module.rehearse(name, new Uint8Array(bytes));
+    module.rehearse(name, new Uint8Array(bytes), beside);
     postMessage({ cause: null });
   } catch (cause) {
     // The importer's sentences are strings; all else is the reader's own end.

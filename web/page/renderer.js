@@ -58,8 +58,8 @@ export function orLost(call) {
   });
 }
 
-/** Reads a file in a worker of its own. Fails with a sentence where it cannot be read, or takes too long. */
-export function rehearse(name, bytes) {
+/** Reads a scene's file in a worker of its own. Fails with a sentence where it cannot be read, or takes too long. */
+export function rehearse({ name, bytes, beside }) {
   return new Promise((done, failed) => {
     const worker = new Worker(new URL('./rehearse.js', import.meta.url), { type: 'module' });
     const end = (cause) => {
@@ -82,6 +82,6 @@ export function rehearse(name, bytes) {
       end(`${name} cannot be read: ${event.message || 'the reader did not start'}`);
     });
     const renderer = page.reduced ? './webgl2/foveal_web.js' : './foveal_web.js';
-    worker.postMessage({ renderer, name, bytes });
+    worker.postMessage({ renderer, name, bytes, beside });
   });
 }

@@ -7,10 +7,10 @@ import { hasStopped, isLost, orLost, rehearse } from './renderer.js';
 
 const SCENES = ['demo', 'cornell', 'materials-grid', 'alpha', 'demo:1000'];
 
-/** Bytes that a file may have, as in the reader: a larger one is not fetched into memory to be refused. */
+/** Bytes that files may have, as in the reader: larger ones are not fetched into memory to be refused. */
 const MOST_BYTES = 512 * 2 ** 20;
 
-/** The user's files that have been shown, by name. Their bytes are read anew each time. */
+/** The user's files that have been shown, each with those beside it, by name. Their bytes are read anew each time. */
 const files = new Map();
 
 export async function showScene(scene, place) {
@@ -24,10 +24,10 @@ export async function showScene(scene, place) {
     say(String(cause));
   }
   try {
-    if (scene.bytes && !scene.isRead) await rehearse(scene.name, scene.bytes);
+    if (scene.bytes && !scene.isRead) await rehearse(scene);
     scene.isRead = true;
     const text = await orLost(() => (scene.bytes
-      ? page.viewer.load(scene.name, new Uint8Array(scene.bytes))
+      ? page.viewer.load(scene.name, new Uint8Array(scene.bytes), scene.beside)
       : page.viewer.generate(scene.name)));
     const shown = JSON.parse(text);
     page.scene = scene;
@@ -66,36 +66,51 @@ function showAlone(scene) {
   return alone(() => showScene(scene).catch((cause) => page.restart(cause)));
 }
 
-async function showFile(file) {
-  if (file.size > MOST_BYTES) {
+/** Files that come together: the scene first, then those that may lie beside it. */
+function sceneFirst(given) {
+  const scene = given.find(({ name }) => /\.(glb|gltf)$/i.test(name)) ?? given[0];
+  return [scene, ...given.filter((file) => file !== scene)];
+}
+
+/** Shows the first of the files; the others are those that it may name. */
+async function showFiles(together) {
+  const refuse = (sentence) => {
+    say(sentence);
+    $('scene').value = page.scene.name;
+  };
+  const [{ name }] = together;
+  const size = together.reduce((sum, file) => sum + file.size, 0);
+  if (size > MOST_BYTES) {
     const megabytes = (bytes) => `${(bytes / 1e6).toFixed(1)} MB`;
-    say(`${file.name} is too large: it has ${megabytes(file.size)}, the limit is ${megabytes(MOST_BYTES)}; what is shown stays`);
-    $('scene').value = page.scene.name;
+    const all = together.length > 1 ? ' with the files beside it' : '';
+    refuse(`${name} is too large: it has ${megabytes(size)}${all}, the limit is ${megabytes(MOST_BYTES)}; what is shown stays`);
     return;
   }
-  let bytes;
-  try {
-    bytes = await file.arrayBuffer();
-  } catch (cause) {
-    say(`${file.name} cannot be read: ${cause.message}`);
-    $('scene').value = page.scene.name;
-    return;
+  const read = [];
+  for (const file of together) {
+    try {
+      read.push([file.name, await file.arrayBuffer()]);
+    } catch (cause) {
+      refuse(`${file.name} cannot be read: ${cause.message}`);
+      return;
+    }
   }
-  if (await showAlone({ name: file.name, bytes })) files.set(file.name, file);
+  const [[, bytes], ...others] = read;
+  if (await showAlone({ name, bytes, beside: new Map(others) })) files.set(name, together);
 }
 
 /** Shows what the list names: a file, or else a generated scene. */
 function showNamed(name) {
-  const file = files.get(name);
-  return file ? showFile(file) : showAlone({ name, bytes: null });
+  const together = files.get(name);
+  return together ? showFiles(together) : showAlone({ name, bytes: null });
 }
 
 export function wireScenes() {
   for (const scene of SCENES) $('scene').add(new Option(scene, scene));
   $('scene').addEventListener('change', (event) => showNamed(event.target.value));
   $('file').addEventListener('change', (event) => {
-    const [file] = event.target.files;
-    if (file) showFile(file);
+    const chosen = [...event.target.files];
+    if (chosen.length) showFiles(sceneFirst(chosen));
     event.target.value = '';
   });
   let over = 0;
@@ -107,8 +122,6 @@ export function wireScenes() {
     over = 0;
     $('drop').hidden = true;
     const dropped = [...event.dataTransfer.files];
-    // A scene may come with files that lie beside it.
-    const file = dropped.find(({ name }) => /\.(glb|gltf)$/i.test(name)) ?? dropped[0];
-    if (file) showFile(file);
+    if (dropped.length) showFiles(sceneFirst(dropped));
   });
 }

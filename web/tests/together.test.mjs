@@ -1,8 +1,10 @@
-// Scenes of files in a real browser.
+// Files that are given together, and those that cannot be shown, in a real browser.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { open, settled } from './browser.mjs';
+import { open, picture, settled } from './browser.mjs';
+import { triangle } from './files.mjs';
+import { redPixels } from './native.mjs';
 
 const SMALL = { width: 1000, height: 300 };
 
@@ -10,8 +12,43 @@ let site;
 before(async () => { site = await open(); });
 after(() => site.close());
 
+/** The triangle as a .gltf that names its buffer. */
+function apart() {
+  const glb = triangle();
+  const length = glb.readUInt32LE(12);
+  const json = JSON.parse(glb.subarray(20, 20 + length));
+  json.buffers[0].uri = 'data/the%20triangle.bin';
+  return [Buffer.from(JSON.stringify(json)), glb.subarray(glb.length - 36)];
+}
+
 /** Opens files by the button. */
 const choose = (page, files) => page.locator('#file').setInputFiles(files.map(([name, buffer]) => ({ name, buffer, mimeType: 'application/octet-stream' })));
+
+test('a .gltf is shown with the files that it names, and without them says which is missing', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
+  await settled(page);
+  const [gltf, bin] = apart();
+  await choose(page, [['apart.gltf', gltf]]);
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /apart\.gltf.*"data\/the triangle\.bin" lies beside the file.*give both at once/);
+  assert.equal(await page.locator('#scene').inputValue(), 'cornell');
+  await page.locator('.message button').click();
+  await choose(page, [['the triangle.bin', bin], ['apart.gltf', gltf]]);
+  await page.waitForFunction(() => document.getElementById('scene').value === 'apart.gltf');
+  const red = redPixels(await picture(page, false));
+  assert.ok(red > 100, `${red} red pixels`);
+  // From the list, and on another device, too.
+  await page.locator('#scene').selectOption('cornell');
+  await page.waitForFunction(() => window.foveal.scene.name === 'cornell');
+  await page.locator('#scene').selectOption('apart.gltf');
+  await page.waitForFunction(() => window.foveal.scene.name === 'apart.gltf');
+  await settled(page);
+  await page.evaluate(() => { window.foveal.viewer.lose_device(); window.foveal.stale = true; });
+  await page.locator('.message').waitFor();
+  assert.equal(redPixels(await picture(page, false)), red);
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
 
 test('a scene without geometry is shown, and its camera moves', async () => {
   const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);

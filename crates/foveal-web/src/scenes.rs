@@ -1,8 +1,11 @@
 //! Scenes by name, and from dropped files.
 
+use std::collections::BTreeMap;
+
 use foveal_generate as generate;
 use foveal_scene::{Aabb, Camera, LoadOptions, Scene, load_bytes};
 use glam::Vec3;
+use js_sys::Uint8Array;
 use serde::Serialize;
 
 use crate::camera::Place;
@@ -51,9 +54,29 @@ pub(crate) fn generated(name: &str) -> Result<Scene, String> {
     Ok(scene)
 }
 
-/// A `.glb` or a `.gltf` that holds its buffers itself: a page cannot read what lies beside a
-/// dropped file.
-pub(crate) fn from_bytes(name: &str, bytes: &[u8]) -> Result<Scene, String> {
+/// Files that a visitor gave together with a scene, by their names: a map of `ArrayBuffer`s.
+pub(crate) struct Beside(BTreeMap<String, Vec<u8>>);
+
+impl Beside {
+    pub(crate) fn new(files: &js_sys::Map) -> Self {
+        let mut found = BTreeMap::new();
+        files.for_each(&mut |bytes, name| {
+            if let Some(name) = name.as_string() {
+                found.insert(name, Uint8Array::new(&bytes).to_vec());
+            }
+        });
+        Self(found)
+    }
+
+    /// The file of a URI: a page does not know the folders that files come from.
+    fn get(&self, uri: &str) -> Option<&Vec<u8>> {
+        self.0.get(uri.rsplit(['/', '\\']).next().unwrap_or(uri))
+    }
+}
+
+/// A `.glb` or a `.gltf`, with what lies beside it as far as that was given too: a page cannot look
+/// there.
+pub(crate) fn from_bytes(name: &str, bytes: &[u8], beside: &Beside) -> Result<Scene, String> {
     let options = LoadOptions {
         parallel: false,
         max_file_bytes: 512 << 20,
@@ -62,9 +85,11 @@ pub(crate) fn from_bytes(name: &str, bytes: &[u8]) -> Result<Scene, String> {
         ..LoadOptions::default()
     };
     let outside = |uri: &str| {
-        Err(format!(
-            "\"{uri}\" lies beside the file, where a page cannot look; drop a .glb that holds everything"
-        ))
+        beside.get(uri).cloned().ok_or_else(|| {
+            format!(
+                "\"{uri}\" lies beside the file, where a page cannot look; give both at once, or a .glb that holds everything"
+            )
+        })
     };
     let mut scene = load_bytes(bytes, name, &options, &outside).map_err(|e| e.to_string())?;
     // One thread filters it.

@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 
 use crate::camera::Place;
 use crate::present::Present;
-use crate::scenes::{self, Shown};
+use crate::scenes::{self, Beside, Shown};
 use crate::side::Side;
 
 /// One frame, as the page asks for it.
@@ -129,8 +129,8 @@ pub fn settings_table() -> String {
 /// # Errors
 /// As [`Viewer::load`].
 #[wasm_bindgen]
-pub fn rehearse(name: &str, bytes: Vec<u8>) -> Result<(), String> {
-    scenes::from_bytes(name, &bytes).map(drop)
+pub fn rehearse(name: &str, bytes: Vec<u8>, beside: &js_sys::Map) -> Result<(), String> {
+    scenes::from_bytes(name, &bytes, &Beside::new(beside)).map(drop)
 }
 
 #[wasm_bindgen(start)]
@@ -202,13 +202,20 @@ impl Viewer {
         self.show(scene).await
     }
 
-    /// Shows a `.glb`; tells its figures and its camera as JSON. The old scene stays where it
-    /// fails.
+    /// Shows a `.glb` or a `.gltf`; tells its figures and its camera as JSON. `beside` holds the
+    /// files that it names, as far as they were given: a map of `ArrayBuffer`s by their names,
+    /// without folders. The old scene stays where it fails.
     ///
     /// # Errors
     /// A sentence that names the file, the place and the cause.
-    pub async fn load(&mut self, name: String, bytes: Vec<u8>) -> Result<String, String> {
-        let scene = scenes::from_bytes(&name, &bytes)?;
+    pub async fn load(
+        &mut self,
+        name: String,
+        bytes: Vec<u8>,
+        beside: js_sys::Map,
+    ) -> Result<String, String> {
+        let scene = scenes::from_bytes(&name, &bytes, &Beside::new(&beside))?;
+        drop((bytes, beside));
         self.show(scene).await
     }
 
