@@ -3,7 +3,7 @@
 //! Three flags are spelled otherwise: `--size WxH` is width and height; `--rate FILE.png` and
 //! `--environment FILE.hdr` name the source `image` and its file at once.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::builder::{
@@ -144,23 +144,33 @@ fn text_of<T: FromStr<Err = foveal::Error>>() -> ValueParser {
 
 /// What `--lens` names; a file's coefficients go into the settings themselves.
 fn lens(text: &str) -> Result<Value, String> {
-    if !text.to_lowercase().ends_with(".toml") {
-        return match text.parse::<Lens>() {
-            Ok(_) => Ok(Value::from(text)),
-            Err(foveal::Error::Setting { expected, .. }) => Err(format!("it must be {expected}")),
-            Err(cause) => Err(cause.to_string()),
-        };
+    if names_lens_file(text) {
+        return lens_file(Path::new(text)).map(Value::from);
     }
-    let wrong = |cause: &dyn std::fmt::Display| format!("the lens file '{text}': {cause}");
-    let file = crate::text_file::read(std::path::Path::new(text)).map_err(|e| wrong(&e))?;
+    match text.parse::<Lens>() {
+        Ok(_) => Ok(Value::from(text)),
+        Err(foveal::Error::Setting { expected, .. }) => Err(format!("it must be {expected}")),
+        Err(cause) => Err(cause.to_string()),
+    }
+}
+
+/// Whether a lens is said by a file.
+pub(super) fn names_lens_file(text: &str) -> bool {
+    is_file(text, &[".toml"])
+}
+
+/// A lens's file as the coefficients that stand for it.
+pub(super) fn lens_file(path: &Path) -> Result<String, String> {
+    let wrong = |cause: &str| format!("the lens file '{}': {cause}", path.display());
+    let file = crate::text_file::read(path).map_err(|e| wrong(&e.to_string()))?;
     let LensProfile {
         distortion,
         red,
         blue,
-    } = toml::from_str(&file).map_err(|e: toml::de::Error| wrong(&e))?;
+    } = toml::from_str(&file).map_err(|e: toml::de::Error| wrong(e.message()))?;
     let numbers = distortion.iter().chain(&red).chain(&blue);
     let numbers: Vec<String> = numbers.map(ToString::to_string).collect();
-    Ok(Value::from(numbers.join(",")))
+    Ok(numbers.join(","))
 }
 
 /// Whether a name ends like one of these.

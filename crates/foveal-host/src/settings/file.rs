@@ -1,12 +1,14 @@
 //! Settings from three places: the defaults, below a TOML file, below the flags.
 
+use std::ops::Range;
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use foveal::Settings;
-use toml::Table;
+use serde::Deserialize;
+use toml::{Spanned, Table};
 
-use super::args::{SettingsArgs, gives_size};
+use super::args::{SettingsArgs, gives_size, lens_file, names_lens_file};
 
 impl SettingsArgs {
     /// The settings that hold.
@@ -53,16 +55,37 @@ pub fn check(settings: &Settings) -> anyhow::Result<()> {
     Ok(settings.validate(&boundless)?)
 }
 
-/// Reads a settings file, and whether it says how large the picture is.
+/// Reads a settings file, and whether it says how large the picture is. The name of a
+/// lens's file counts from its folder.
 ///
 /// # Errors
 /// Where it cannot be read, and where it is wrong, with line and key.
 pub fn read(path: &Path) -> anyhow::Result<(Settings, bool)> {
     let text = crate::text_file::read(path)
         .with_context(|| format!("cannot read the settings file '{}'", path.display()))?;
-    let settings = from_text(&text, &path.display().to_string())?;
+    let name = path.display().to_string();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let text = with_lens(text, folder, &name)?;
+    let settings = from_text(&text, &name)?;
     let given: Table = toml::from_str(&text)?;
     Ok((settings, gives_size(&given)))
+}
+
+/// The settings file's text with the coefficients of its lens where it names the lens's file.
+fn with_lens(mut text: String, folder: &Path, name: &str) -> anyhow::Result<String> {
+    #[derive(Deserialize)]
+    struct Named {
+        lens: Spanned<String>,
+    }
+    // What else is wrong is found when all of it is read.
+    if let Ok(Named { lens }) = toml::from_str(&text)
+        && names_lens_file(lens.get_ref())
+    {
+        let coefficients = lens_file(&folder.join(lens.get_ref()))
+            .map_err(|cause| wrong(&text, name, Some(lens.span()), &cause))?;
+        text.replace_range(lens.span(), &format!("\"{coefficients}\""));
+    }
+    Ok(text)
 }
 
 /// Reads the text of a settings file of this name.
@@ -70,16 +93,13 @@ pub fn read(path: &Path) -> anyhow::Result<(Settings, bool)> {
 /// # Errors
 /// Where it is wrong, with line and key.
 pub fn from_text(text: &str, name: &str) -> anyhow::Result<Settings> {
-    parse(text).map_err(|error| {
-        let place = match error.span() {
-            Some(span) => place(text, span.start),
-            None => String::new(),
-        };
-        anyhow!(
-            "the settings file '{name}' is wrong{place}: {}",
-            error.message()
-        )
-    })
+    parse(text).map_err(|error| wrong(text, name, error.span(), error.message()))
+}
+
+/// Says what is wrong with a settings file, and where.
+fn wrong(text: &str, name: &str, span: Option<Range<usize>>, cause: &str) -> anyhow::Error {
+    let place = span.map_or_else(String::new, |span| place(text, span.start));
+    anyhow!("the settings file '{name}' is wrong{place}: {cause}")
 }
 
 fn parse(text: &str) -> Result<Settings, toml::de::Error> {

@@ -207,6 +207,37 @@ fn a_size_is_given_by_a_flag_or_by_a_file_that_names_one() {
 }
 
 #[test]
+fn a_lens_may_be_a_file_beside_the_settings() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    let lens = write(
+        "own.toml",
+        "distortion = [0.34, 0.55, 0.0]\nblue = [1.014, 0.0]\n",
+    );
+    for named in ["\"own.toml\"", "'./own.toml'"] {
+        let text = format!("exposure = 1.0\nlens = {named} # of my own\nwidth = 10\n");
+        let (settings, is_sized) = read(&write("s.toml", &text)).unwrap();
+        let by_flag = from_flags(&["--lens", lens.to_str().unwrap()]);
+        assert_eq!(settings.stereo.lens, by_flag.stereo.lens);
+        assert_ne!(settings.stereo.lens, Settings::default().stereo.lens);
+        assert_eq!((settings.picture.width, is_sized), (10, true));
+    }
+    write("broken.toml", "distortion = 1\n");
+    for (named, cause) in [("none.toml", "the lens file"), ("broken.toml", "array")] {
+        let path = write("s.toml", &format!("exposure = 1.0\nlens = \"{named}\"\n"));
+        let error = read(&path).unwrap_err().to_string();
+        for part in ["s.toml' is wrong in line 2, key 'lens'", named, cause] {
+            assert!(error.contains(part), "{part}: {error}");
+        }
+        assert_eq!(error.lines().count(), 1, "{error}");
+    }
+}
+
+#[test]
 fn a_wrong_settings_file_is_named_with_line_and_key() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("s.toml");
