@@ -20,32 +20,31 @@ impl From<&Setting> for Described {
     fn from(setting: &Setting) -> Self {
         let (kind, names, (least, most)) = match setting.kind {
             Kind::Switch => ("switch", Vec::new(), (0.0, 1.0)),
-            Kind::Choice(names) => ("choice", offered(names()), (0.0, 0.0)),
+            Kind::Choice(names) => ("choice", offered(setting, names()), (0.0, 0.0)),
             Kind::Integer { least, most } => ("integer", Vec::new(), (least as f64, most as f64)),
             Kind::Number { least, most } => ("number", Vec::new(), (least, most)),
             Kind::Place => ("place", Vec::new(), (0.0, 1.0)),
             Kind::Text => ("text", Vec::new(), (0.0, 0.0)),
             Kind::File => ("file", Vec::new(), (0.0, 0.0)),
         };
-        let is_offered =
-            |name: &&str| !cfg!(feature = "webgl") || setting.has_name_in_reduced_set(name);
         Self {
             key: setting.key,
             stage: setting.stage,
             label: setting.label,
             help: setting.help,
             kind,
-            names: names.iter().copied().filter(is_offered).collect(),
+            names,
             least,
             most,
         }
     }
 }
 
-/// A choice's names without `image`, whose file a page has no way to name.
-fn offered(names: &[&'static str]) -> Vec<&'static str> {
-    let has_no_file = |name: &&&str| **name != "image";
-    names.iter().filter(has_no_file).copied().collect()
+/// A choice's names that this build can meet: `image` needs a file, which a page has no way to name.
+fn offered(setting: &Setting, names: &[&'static str]) -> Vec<&'static str> {
+    let is_met = |name| !cfg!(feature = "webgl") || setting.has_name_in_reduced_set(name);
+    let is_offered = |name: &&str| *name != "image" && is_met(name);
+    names.iter().copied().filter(is_offered).collect()
 }
 
 /// All settings that this build can meet, in the order of the frame, as JSON.
