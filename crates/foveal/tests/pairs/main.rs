@@ -11,12 +11,12 @@ mod placement;
 mod settings;
 
 use foveal::{
-    Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, CullingEyes, Error, EyeClipping,
-    Frame, Geometry, Gpu, LightAssignment, LightingPass, MaterialDispatch, RateSource, Renderer,
-    RendererOptions, Settings, Shading, Shadows, Stereo,
+    AmbientOcclusion, Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, CullingEyes,
+    Error, EyeClipping, Frame, Geometry, Gpu, LightAssignment, LightingPass, MaterialDispatch,
+    RateSource, Renderer, RendererOptions, Settings, Shading, Shadows, Stereo,
 };
 use foveal_generate as generate;
-use foveal_scene::{Camera, LightKind, Scene};
+use foveal_scene::{Camera, LightKind, Material, Scene};
 use glam::Vec3;
 use pollster::block_on;
 use proptest::prelude::Rng;
@@ -33,6 +33,25 @@ const ROUND: usize = 20;
 
 static GPU: LazyLock<Gpu> =
     LazyLock::new(|| block_on(Gpu::open(None)).expect("the tests need a graphics adapter"));
+
+/// A device that was asked for no more than WebGL 2 has.
+static REDUCED: LazyLock<Gpu> = LazyLock::new(|| {
+    block_on(async {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let adapter = instance
+            .request_adapter(&wgpu::RequestAdapterOptions::default())
+            .await
+            .expect("the tests need a graphics adapter");
+        let (device, queue) = adapter
+            .request_device(&wgpu::DeviceDescriptor {
+                required_limits: Gpu::reduced_limits(),
+                ..Default::default()
+            })
+            .await
+            .expect("every device has this little");
+        Gpu::from_device(device, queue)
+    })
+});
 
 static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
     let names = ["cornell", "alpha", "lobes", "materials-grid", "demo:1000"];
@@ -56,8 +75,9 @@ fn lit(mut scene: Scene) -> Scene {
 }
 
 /// Two sides, how far apart a byte of their pictures may be, the share of bytes that may be farther,
-/// whether the last frame alone counts, whether the second side draws no other, and what it is set to
-/// in the frames before the last of motion.
+/// whether the last frame alone counts, whether the second side draws no other, what it is set to in
+/// the frames before the last of motion, where its world lies, and whether the reduced renderer
+/// draws it.
 struct Pair {
     name: &'static str,
     sides: [Settings; 2],
@@ -67,6 +87,7 @@ struct Pair {
     skips: bool,
     before: Option<Settings>,
     placement: Option<Placement>,
+    is_reduced: bool,
 }
 
 fn pair(chance: &mut Chance<'_>, both: &Settings, before: &mut Chance<'_>) -> Pair {
@@ -81,10 +102,11 @@ fn pair(chance: &mut Chance<'_>, both: &Settings, before: &mut Chance<'_>) -> Pa
         skips: false,
         before: None,
         placement: None,
+        is_reduced: false,
     };
     // Tiles lie elsewhere in the atlas of shadows, so that a texel at an edge may turn.
     let has_shadows = both.lighting.shadows != Shadows::Off;
-    match chance.of(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13]) {
+    match chance.of(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14]) {
         0 => {
             let eyes = chance.of(&[CullingEyes::Each, CullingEyes::Shared]);
             let scale = chance.of(&[4, 1, 2, 7]);
@@ -234,6 +256,24 @@ fn pair(chance: &mut Chance<'_>, both: &Settings, before: &mut Chance<'_>) -> Pa
                 ..of("placed", [here, there])
             }
         }
+        13 => {
+            let side = |s: &mut Settings| {
+                s.geometry.path = Geometry::Gbuffer;
+                s.antialiasing.mode = Antialiasing::None;
+                s.shading.mode = Shading::Full;
+                s.lighting.pass = LightingPass::Fragment;
+                s.lighting.ambient_occlusion = AmbientOcclusion::Off;
+                if s.lighting.shadows == Shadows::Contact {
+                    s.lighting.shadows = Shadows::Soft;
+                }
+            };
+            Pair {
+                tolerance: 2,
+                beyond: 0.005,
+                is_reduced: true,
+                ..of("reduced", sides(&side, &side))
+            }
+        }
         _ => Pair {
             tolerance: 1,
             ..of(
@@ -257,6 +297,7 @@ fn drawable<T>(result: Result<T, Error>) -> Option<T> {
 /// The pictures of all frames from `first` on, or of the last one; `None` where these settings cannot
 /// be drawn. Until the last frame of motion the renderer has the settings `before`.
 fn pictures(
+    gpu: &Gpu,
     poses: &[Scene],
     cameras: &[Camera],
     settings: &Settings,
@@ -266,7 +307,7 @@ fn pictures(
 ) -> Option<Vec<Vec<u8>>> {
     block_on(async {
         let start = before.unwrap_or(settings);
-        let new = Renderer::new(&GPU, start, RendererOptions::default());
+        let new = Renderer::new(gpu, start, RendererOptions::default());
         let mut renderer = drawable(new.await)?;
         let start = &poses[first.min(poses.len() - 1)];
         renderer.set_scene(start).await.expect("it fits");
@@ -305,8 +346,11 @@ fn compare(numbers: &[u8]) -> Result<bool, String> {
     let frames = if pair.at_rest { 4 + ROUND } else { 4 };
     let cameras = motion::cameras(&mut of(8..20), scene, frames);
     let poses = motion::poses(&mut of(20..32), scene);
-    let draw = |poses: &[_], cameras: &[_], side, before, first| {
-        pictures(poses, cameras, side, before, pair.at_rest, first)
+    if pair.is_reduced && scene.materials.iter().any(Material::has_lobes) {
+        return Ok(false);
+    }
+    let draw = |gpu, poses: &[_], cameras: &[_], side, before, first| {
+        pictures(gpu, poses, cameras, side, before, pair.at_rest, first)
     };
     let first = if pair.skips { cameras.len() - 1 } else { 0 };
     let (mut other_poses, mut other_cameras) = (poses.clone(), cameras.clone());
@@ -319,8 +363,16 @@ fn compare(numbers: &[u8]) -> Result<bool, String> {
             .for_each(|camera| placement.camera(camera));
     }
     let [a, b] = &pair.sides;
-    let a = draw(&poses, &cameras, a, None, 0);
-    let b = draw(&other_poses, &other_cameras, b, pair.before.as_ref(), first);
+    let a = draw(&GPU, &poses, &cameras, a, None, 0);
+    let gpu = if pair.is_reduced { &REDUCED } else { &GPU };
+    let b = draw(
+        gpu,
+        &other_poses,
+        &other_cameras,
+        b,
+        pair.before.as_ref(),
+        first,
+    );
     let (Some(a), Some(b)) = (a, b) else {
         return Ok(false);
     };
