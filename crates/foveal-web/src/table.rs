@@ -42,7 +42,7 @@ impl From<&Setting> for Described {
 
 /// A choice's names that this build can meet: `image` needs a file, which a page has no way to name.
 fn offered(setting: &Setting, names: &[&'static str]) -> Vec<&'static str> {
-    let is_met = |name| !cfg!(feature = "webgl") || setting.has_name_in_reduced_set(name);
+    let is_met = |name: &str| !cfg!(feature = "webgl") || setting.has_name_in_reduced_set(name);
     let is_offered = |name: &&str| *name != "image" && is_met(name);
     names.iter().copied().filter(is_offered).collect()
 }
