@@ -100,11 +100,8 @@ pub(crate) fn build(
     }
     let mut shape = morphs::read_shape(def, request.uv_sets, reader, &source, &mut notes)?;
     if let Some(shape) = &mut shape {
-        let targets = shape.targets.iter_mut();
-        for target in targets.filter(|target| target.tangents.is_empty()) {
-            target.tangents = generated.map_or_else(Vec::new, |uvs| {
-                tangents::deltas(&vertices, &indices, uvs, target, flat)
-            });
+        if let Some(uvs) = generated {
+            tangents::add_to_targets(&mut shape.targets, &vertices, &indices, uvs, flat);
         }
         shape.rest.clone_from(&vertices);
         shape.flat = flat;

@@ -276,48 +276,60 @@ fn means(vertices: &[Vertex], solid: &[u32], uvs: TangentUvs) -> Vec<[f32; 4]> {
         .collect()
 }
 
-/// Differences that a morph target which gives none makes to generated tangents, one per vertex: those
-/// of the means at rest and where it is in full effect (glTF 2.0, section 3.7.2.2). `flat`: normals are
-/// those of the planes. Empty where it moves nothing that tangents follow.
-pub(crate) fn deltas(
+/// Gives morph targets that have no tangents the differences that they make to generated ones: those of
+/// the means at rest and where a target is in full effect (glTF 2.0, section 3.7.2.2). `flat`: normals
+/// are those of the planes.
+pub(crate) fn add_to_targets(
+    targets: &mut [MorphTarget],
     vertices: &[Vertex],
     indices: &[u32],
     uvs: TangentUvs,
-    target: &MorphTarget,
     flat: bool,
-) -> Vec<Vec3> {
-    let moved_uvs = &target.uvs[uvs.slot];
-    if target.positions.is_empty() && target.normals.is_empty() && moved_uvs.is_empty() {
-        return Vec::new();
-    }
-    let mut morphed = vertices.to_vec();
-    for (i, vertex) in morphed.iter_mut().enumerate() {
-        let delta = |list: &[Vec3]| list.get(i).copied().unwrap_or(Vec3::ZERO);
-        let normal = Vec3::from(vertex.normal) + delta(&target.normals);
-        vertex.position = (Vec3::from(vertex.position) + delta(&target.positions)).to_array();
-        vertex.normal = normal.normalize_or(vertex.normal.into()).to_array();
-        let moved = moved_uvs.get(i).copied().unwrap_or(Vec2::ZERO);
-        vertex.uv[uvs.slot] = (Vec2::from(vertex.uv[uvs.slot]) + moved).to_array();
-    }
-    if flat {
-        normals::flat(&mut morphed);
-    }
-    let means = |vertices: &[Vertex]| {
-        let mut sums = vec![Vec3::ZERO; vertices.len()];
-        for t in indices.chunks_exact(3) {
-            let (shares, _) = shares([t[0], t[1], t[2]].map(|i| &vertices[i as usize]), uvs);
-            t.iter()
-                .zip(shares)
-                .for_each(|(&i, share)| sums[i as usize] += share);
-        }
-        sums.into_iter().map(Vec3::try_normalize)
+) {
+    let moves = |t: &MorphTarget| {
+        !(t.positions.is_empty() && t.normals.is_empty() && t.uvs[uvs.slot].is_empty())
     };
-    // Where the triangles of a vertex tell no direction, its tangent stays.
-    let pairs = means(vertices).zip(means(&morphed));
-    pairs
-        .map(|(before, now)| {
-            now.zip(before)
+    let mut at_rest = None;
+    for target in targets
+        .iter_mut()
+        .filter(|t| t.tangents.is_empty() && moves(t))
+    {
+        let at_rest = at_rest.get_or_insert_with(|| means_of_vertices(vertices, indices, uvs));
+        let mut morphed = vertices.to_vec();
+        for (i, vertex) in morphed.iter_mut().enumerate() {
+            morph(vertex, i, target, uvs.slot);
+        }
+        if flat {
+            normals::flat(&mut morphed);
+        }
+        let now = means_of_vertices(&morphed, indices, uvs);
+        // Where the triangles of a vertex tell no direction, its tangent stays.
+        let delta = |(now, before): (Option<Vec3>, &Option<Vec3>)| {
+            now.zip(*before)
                 .map_or(Vec3::ZERO, |(now, before)| now - before)
-        })
-        .collect()
+        };
+        target.tangents = now.into_iter().zip(at_rest.iter()).map(delta).collect();
+    }
+}
+
+/// Moves what the tangent of a vertex follows by a target in full effect.
+fn morph(vertex: &mut Vertex, i: usize, target: &MorphTarget, uv_slot: usize) {
+    let delta = |list: &[Vec3]| list.get(i).copied().unwrap_or(Vec3::ZERO);
+    let normal = Vec3::from(vertex.normal) + delta(&target.normals);
+    vertex.position = (Vec3::from(vertex.position) + delta(&target.positions)).to_array();
+    vertex.normal = normal.normalize_or(vertex.normal.into()).to_array();
+    let moved = target.uvs[uv_slot].get(i).copied().unwrap_or(Vec2::ZERO);
+    vertex.uv[uv_slot] = (Vec2::from(vertex.uv[uv_slot]) + moved).to_array();
+}
+
+/// Angle-weighted means, one per vertex; `None` where its triangles tell no direction.
+fn means_of_vertices(vertices: &[Vertex], indices: &[u32], uvs: TangentUvs) -> Vec<Option<Vec3>> {
+    let mut sums = vec![Vec3::ZERO; vertices.len()];
+    for t in indices.chunks_exact(3) {
+        let (shares, _) = shares([t[0], t[1], t[2]].map(|i| &vertices[i as usize]), uvs);
+        for (&i, share) in t.iter().zip(shares) {
+            sums[i as usize] += share;
+        }
+    }
+    sums.into_iter().map(Vec3::try_normalize).collect()
 }
