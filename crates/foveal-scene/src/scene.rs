@@ -206,13 +206,14 @@ impl Scene {
     }
 
     /// A camera that sees the whole scene in a picture at least 6:5 wide: from the front, a little
-    /// above and to the right, 45° high.
+    /// above and to the right, 45° high. Of a scene that is next to nothing in this pose it sees what
+    /// there is at rest.
     #[must_use]
     pub fn overview_camera(&self) -> Camera {
         const TAN_HALF_FOV: f32 = 0.414_213_57;
         const WIDTH_TO_HEIGHT: f32 = 1.2;
         const MARGIN: f32 = 1.08;
-        let bounds = match self.bounds() {
+        let bounds = match self.overview_bounds() {
             empty if empty.is_empty() => Aabb {
                 min: -Vec3::ONE,
                 max: Vec3::ONE,

@@ -244,6 +244,7 @@ fn build(
     rig.finish(&mut scene, document, &shown, &placed.clouds, &carriers);
     scene.show(&hierarchy.visible);
     choose_clip(&mut scene, &options.clip)?;
+    scene.keep_rest();
     scene.pose(options.time_s);
     scene.timings.bounds_ms = watch.lap_ms();
     Ok(scene)

@@ -251,6 +251,7 @@ impl Rigging {
         scene.rig = Rig {
             data: Some(Arc::new(self.data)),
             played: 0..0,
+            ..Rig::default()
         };
     }
 }

@@ -19,7 +19,13 @@ pub struct Rig {
     pub(crate) data: Option<Arc<RigData>>,
     /// Which of its animations play.
     pub(crate) played: Range<usize>,
+    /// The box around what the file shows before anything plays, without skinned meshes, whose joints
+    /// place them.
+    pub(crate) at_rest: Aabb,
 }
+
+/// Part of its size at rest by which a scene is next to nothing.
+const NEXT_TO_NOTHING: f32 = 0.01;
 
 /// A node at rest.
 #[derive(Clone, Debug)]
@@ -373,6 +379,25 @@ impl Scene {
                 light.intensity = 0.0;
             }
         }
+    }
+
+    /// Keeps where things are at rest, before the first pose.
+    pub(crate) fn keep_rest(&mut self) {
+        let Some(rig) = &self.rig.data else { return };
+        let placed = self.instances.iter();
+        let placed = placed.filter(|instance| !rig.skinned.contains(&instance.mesh));
+        self.rig.at_rest = placed.fold(Aabb::EMPTY, |all, instance| all.union(instance.bounds));
+    }
+
+    /// The box to show as a whole: around all objects, and where they are next to nothing in this pose,
+    /// as a clip may begin that makes things grow, around what is there at rest.
+    pub(crate) fn overview_bounds(&self) -> Aabb {
+        let (now, rest) = (self.bounds(), self.rig.at_rest);
+        let size = |bounds: Aabb| bounds.size().length();
+        if now.is_empty() || rest.is_empty() || size(now) > NEXT_TO_NOTHING * size(rest) {
+            return now;
+        }
+        now.union(rest)
     }
 
     /// True when [`Scene::pose`] at different times gives different scenes.

@@ -172,3 +172,27 @@ fn variants_that_point_nowhere_are_errors() {
         );
     }
 }
+
+#[test]
+fn an_overview_shows_what_a_clip_makes_grow_out_of_nothing() {
+    for first in [0.0, 1e-3, 0.5] {
+        let mut file = File::with_triangle();
+        let times = file.floats(&[0.0, 1.0], "SCALAR");
+        let scales = file.floats(&[first, first, first, 1.0, 1.0, 1.0], "VEC3");
+        file.push(
+            "animations",
+            json!({
+                "samplers": [{ "input": times, "output": scales }],
+                "channels": [{ "sampler": 0, "target": { "node": 0, "path": "scale" } }],
+            }),
+        );
+        let scene = file.load();
+        assert_eq!(scene.bounds().max.x, first);
+        let distance = |scene: &crate::Scene| scene.overview_camera().eye().length();
+        let whole = distance(&File::with_triangle().load());
+        let part = distance(&scene) / whole;
+        // What is there at the beginning fills the picture.
+        let expected = if first == 0.5 { 0.5 } else { 1.0 };
+        assert!((part - expected).abs() < 0.01, "{first}: {part}");
+    }
+}
