@@ -166,6 +166,20 @@ fn mirrored_and_scaled_instances_equal_their_twins() {
     assert_equals_twin(&scene, &scene.cameras[0].clone());
 }
 
+#[test]
+fn instances_of_meshes_in_small_units_equal_their_twins() {
+    // Meshes of integers are scaled by a 32767th of their size.
+    let small = 1e-8;
+    let mut scene = generate::cornell();
+    for vertex in scene.meshes.iter_mut().flat_map(|mesh| &mut mesh.vertices) {
+        vertex.position = vertex.position.map(|x| x / small);
+    }
+    for instance in &mut scene.instances {
+        instance.world_from_object *= glam::Mat4::from_scale(Vec3::splat(small));
+    }
+    assert_equals_twin(&scene, &scene.cameras[0].clone());
+}
+
 /// A texture of 4 x 2 texels, each its own colour, without mips or filtering.
 fn tiny_texture(color_space: ColorSpace) -> Texture {
     let nearest = Filter::Nearest;

@@ -205,8 +205,10 @@ fn identity_of(marked_instance: u32, now: vec3f, before: vec4f) -> vec2u {
 }
 
 fn unit_or(v: vec3f, otherwise: vec3f) -> vec3f {
-    let squared = dot(v, v);
-    return select(otherwise, v * inverseSqrt(max(squared, 1e-37)), squared > 1e-30);
+    // Of an instance that is scaled by 1e-8 the normal is some 1e-16 long, whose square is lost.
+    let lifted = select(v, v * 1e18, dot(v, v) < 1e-20);
+    let squared = dot(lifted, lifted);
+    return select(otherwise, lifted * inverseSqrt(max(squared, 1e-37)), squared > 1e-30);
 }
 
 #ifdef LAYERED
