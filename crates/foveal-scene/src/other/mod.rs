@@ -8,6 +8,8 @@ mod mtl;
 mod numbers;
 mod obj;
 mod ply;
+mod ply_elements;
+mod ply_faces;
 mod ply_header;
 mod ply_text;
 mod polygons;

@@ -59,7 +59,8 @@ pub(super) fn parse(bytes: &[u8]) -> Vec<Material> {
         match key.to_ascii_lowercase().as_str() {
             "kd" => material.diffuse = color(rest),
             "ke" => material.emissive = color(rest),
-            "d" => material.opacity = number(rest),
+            // That opacity changes towards the rim is left out.
+            "d" => material.opacity = number(rest.trim_start_matches("-halo")),
             "tr" => material.transparency = number(rest),
             "ns" => material.exponent = number(rest),
             "pm" => material.metallic = number(rest),

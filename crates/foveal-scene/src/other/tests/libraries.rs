@@ -163,3 +163,14 @@ fn a_picture_may_stand_in_quotes_before_a_comment_or_in_folders_of_another_machi
         assert!(!said[1].contains("there is none"), "{name}: {said:?}");
     }
 }
+
+#[test]
+fn opacity_with_a_halo_is_opacity() {
+    let opacity = |line: &str| {
+        let library = HOUSE_MTL.replace("Tr 0.5", line);
+        let scene = load("a.obj", HOUSE.as_bytes(), &[("house.mtl", &library)]).unwrap();
+        let glass = scene.materials.iter().find(|m| m.name == "glass");
+        glass.unwrap().base_color.w
+    };
+    assert_eq!([opacity("d 0.25"), opacity("d -halo 0.25")], [0.25; 2]);
+}
