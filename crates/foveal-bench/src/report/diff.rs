@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use serde_json::Value;
 
+use super::SCHEMA_VERSION;
 use crate::table::text;
 use foveal_host::failure::usage;
 use foveal_host::{atomic_file, console};
@@ -169,6 +170,12 @@ fn parse(text: &str) -> anyhow::Result<Value> {
     if report["schema"] != "foveal-report" {
         bail!("it is no report of 'foveal bench all'");
     }
+    let version = &report["schema_version"];
+    if *version != SCHEMA_VERSION {
+        bail!(
+            "its schema_version is {version}, and this program compares reports of {SCHEMA_VERSION}"
+        );
+    }
     Ok(report)
 }
 
@@ -178,7 +185,22 @@ mod tests {
     use serde_json::json;
 
     fn report(benches: &Value) -> Value {
-        json!({ "schema": "foveal-report", "benches": benches })
+        json!({
+            "schema": "foveal-report", "schema_version": SCHEMA_VERSION, "benches": benches,
+        })
+    }
+
+    #[test]
+    fn reports_of_another_shape_are_refused() {
+        let mut other = report(&json!([measured("a", &[("x", "")])]));
+        let compared = |report: &Value| diff_of_texts(&report.to_string(), &report.to_string());
+        assert!(compared(&other).is_ok());
+        for version in [json!(1), json!(3), json!("2"), Value::Null] {
+            other["schema_version"] = version;
+            let error = compared(&other).unwrap_err().to_string();
+            let named = format!("its schema_version is {}", other["schema_version"]);
+            assert!(error.contains(&named), "{error}");
+        }
     }
 
     fn measured(name: &str, rows: &[(&str, &str)]) -> Value {

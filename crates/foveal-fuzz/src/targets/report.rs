@@ -17,7 +17,7 @@ pub fn report(input: &[u8]) {
 }
 
 const REPORT: &str = r#"{
-    "schema": "foveal-report", "schema_version": 3, "scene": "demo", "width": 320, "height": 180,
+    "schema": "foveal-report", "schema_version": 2, "scene": "demo", "width": 320, "height": 180,
     "quick": true, "program_version": "0.1.0", "date": "2026-11-01",
     "machine": { "processor": "x", "threads": 2, "system": "linux" },
     "benches": [
