@@ -8,7 +8,7 @@ use crate::changes::changed;
 
 /// What a bench chooses itself: the picture, and what its ways are compared by.
 const CHOSEN: [&str; 8] = [
-    "width", "height", "view", "output", "stereo", "shading", "display", "gaze",
+    "width", "height", "view", "show", "stereo", "shading", "display", "gaze",
 ];
 
 /// Settings that all ways share.
@@ -82,6 +82,7 @@ mod tests {
             "shadows=softly",
             "width=100",
             "shading=coarse",
+            "show=anaglyph",
             "environment=room.hdr",
         ] {
             let error = shared(&[text]).plain((320, 180)).unwrap_err();
