@@ -327,8 +327,8 @@ FovealCullStatus foveal_cull_mesh_bake(const FovealCullMeshSource *source, Fovea
 FovealCullStatus foveal_cull_mesh_from_box(const float *min, const float *max, FovealCullMesh **out);
 
 /* Bakes a terrain of a grid of heights that is seen from above (+y): sample i of row j lies at x =
- * i * spacing_x, y = heights[j * columns + i], z = j * spacing_z, metres. Spacings are above 0. Every
- * `step`th sample is kept, and the surface lies under the terrain everywhere: fewer triangles, which hide
+ * (float)i * spacing_x, y = heights[j * columns + i], z = (float)j * spacing_z, metres. Spacings are above 0.
+ * Every `step`th sample is kept, and the surface lies under the terrain everywhere: fewer triangles, which hide
  * somewhat less. NaN is a hole: cells with one are left out. The ground is solid besides: nothing may be seen
  * under the surface, neither through its sides nor, except over holes, from below. A step of 0 is one of 1.
  * Heights are aligned as floats are: other than a source's positions. */

@@ -229,10 +229,10 @@ pub unsafe extern "C" fn foveal_cull_mesh_from_box(
     })
 }
 
-/// Bakes a terrain of a grid of heights that is seen from above: sample `i` of row `j` lies at x = i *
-/// `spacing_x`, y = `heights[j * columns + i]`, z = j * `spacing_z`, metres. Every `step`th sample is
-/// kept, and the surface lies under the terrain everywhere. NaN is a hole; the ground is solid
-/// besides.
+/// Bakes a terrain of a grid of heights that is seen from above: sample `i` of row `j` lies at x =
+/// `i as f32 * spacing_x`, y = `heights[j * columns + i]`, z = `j as f32 * spacing_z`, metres. Every
+/// `step`th sample is kept, and the surface lies under the terrain everywhere. NaN is a hole; the
+/// ground is solid besides.
 ///
 /// # Safety
 /// `heights` is null or `columns * rows` numbers. `out` is null or can be written.

@@ -11,9 +11,9 @@ use super::mesh::OccluderMesh;
 use crate::error::{CullError, Quantity};
 
 impl OccluderMesh {
-    /// Bakes a terrain of a grid of heights: sample `i` of row `j` lies at x = `i * spacing_m[0]`,
-    /// z = `j * spacing_m[1]` and y = `heights[j * columns + i]`, all in metres and mesh space. It is
-    /// seen from above (+y).
+    /// Bakes a terrain of a grid of heights: sample `i` of row `j` lies at x = `i as f32 *
+    /// spacing_m[0]`, z = `j as f32 * spacing_m[1]` and y = `heights[j * columns + i]`, all in metres
+    /// and mesh space. It is seen from above (+y).
     ///
     /// Of `step` samples each way one is kept, and the surface is lowered so that it lies under the
     /// terrain everywhere: fewer triangles, which hide somewhat less. With a step of 1 it touches
@@ -60,7 +60,7 @@ impl OccluderMesh {
         if !spacing_m.iter().all(|s| *s > 0.0) {
             return Err(CullError::NotPositive(Quantity::Spacing));
         }
-        let is_extent = |count: usize, spacing: f32| (count as f32 * spacing).is_finite();
+        let is_extent = |count: usize, spacing: f32| place(count, spacing).is_finite();
         if !is_extent(columns, spacing_m[0])
             || !is_extent(rows, spacing_m[1])
             || heights.iter().any(|h| h.is_infinite())
@@ -74,6 +74,7 @@ impl OccluderMesh {
         let grid = Grid {
             heights,
             columns,
+            spacing_m,
             x: kept(columns, step),
             z: kept(rows, step),
         };
@@ -88,7 +89,7 @@ impl OccluderMesh {
         let positions: Vec<[f32; 3]> = (grid.z.iter())
             .flat_map(|z| grid.x.iter().map(move |x| (*x, *z)))
             .zip(&corners)
-            .map(|((x, z), &y)| [x as f32 * spacing_m[0], y, z as f32 * spacing_m[1]])
+            .map(|((x, z), &y)| [place(x, spacing_m[0]), y, place(z, spacing_m[1])])
             .collect();
         let indices = grid.triangles(&corners);
         Self::bake(&positions, &indices, options.with_deformable(false))
@@ -101,6 +102,17 @@ fn kept(count: usize, step: usize) -> Vec<usize> {
     let mut kept: Vec<usize> = (0..last).step_by(step.max(1)).collect();
     kept.push(last);
     kept
+}
+
+/// Where a sample lies, rounded as the terrain's own vertices are.
+fn place(sample: usize, spacing_m: f32) -> f32 {
+    sample as f32 * spacing_m
+}
+
+/// The part of the way from one sample to another at which a third one lies.
+fn part_of_way(sample: usize, [from, to]: [usize; 2], spacing_m: f32) -> f64 {
+    let [at, from, to] = [sample, from, to].map(|s| f64::from(place(s, spacing_m)));
+    (at - from) / (to - from)
 }
 
 /// The surface over a cell, by its corners at (0, 0), (0, 1), (1, 1) and (1, 0): the lower of its two
@@ -132,6 +144,7 @@ fn rounded_down(height: f64) -> f32 {
 struct Grid<'a> {
     heights: &'a [f32],
     columns: usize,
+    spacing_m: [f32; 2],
     x: Vec<usize>,
     z: Vec<usize>,
 }
@@ -174,13 +187,14 @@ impl Grid<'_> {
         if self.has_hole(cx, cz) {
             return 0.0;
         }
-        let ([x0, x1], [z0, z1]) = ([self.x[cx], self.x[cx + 1]], [self.z[cz], self.z[cz + 1]]);
+        let (x, z) = ([self.x[cx], self.x[cx + 1]], [self.z[cz], self.z[cz + 1]]);
+        let ([x0, x1], [z0, z1]) = (x, z);
         let corners = [(x0, z0), (x0, z1), (x1, z1), (x1, z0)].map(|(x, z)| self.sample(x, z));
         let mut excess = 0.0f64;
         for row in z0..=z1 {
-            let v = (row - z0) as f64 / (z1 - z0) as f64;
+            let v = part_of_way(row, z, self.spacing_m[1]);
             for column in x0..=x1 {
-                let u = (column - x0) as f64 / (x1 - x0) as f64;
+                let u = part_of_way(column, x, self.spacing_m[0]);
                 excess = excess.max(over(corners, u, v) - self.sample(column, row));
             }
         }
@@ -232,8 +246,30 @@ mod tests {
         Grid {
             heights,
             columns,
+            spacing_m: [1.0; 2],
             x: kept(columns, step),
             z: kept(heights.len() / columns, step),
+        }
+    }
+
+    /// 21 km from the first sample places are rounded by a millimetre, and a steep surface stood some
+    /// millimetres above the samples.
+    #[test]
+    fn samples_whose_places_are_rounded_do_not_lie_under_the_surface() {
+        let (count, step, spacing) = (30_001, 10, 0.7);
+        // Down and up, from coarse corner to coarse corner.
+        let height = |i: usize| (i % 20).abs_diff(10) as f32 * 3.5;
+        for (columns, spacing_m, stride) in [(count, [spacing, 1.0], 1), (2, [1.0, spacing], 2)] {
+            let of = |k: usize| height(if stride == 1 { k % count } else { k / 2 });
+            let heights: Vec<f32> = (0..2 * count).map(of).collect();
+            let grid = grid(&heights, columns, step);
+            let corners = Grid { spacing_m, ..grid }.lowered();
+            for i in 0..count - 1 {
+                let cell = [i / step, i / step + 1];
+                let [a, b] = cell.map(|c| f64::from(corners[c * stride]));
+                let surface = a + (b - a) * part_of_way(i, cell.map(|c| c * step), spacing);
+                assert!(surface <= f64::from(height(i)) + 1e-9, "{i}: {surface}");
+            }
         }
     }
 
