@@ -192,8 +192,8 @@ fn motion_in_pixels(now: vec3f, before: vec3f) -> vec2f {
 }
 
 // Part of a pixel's width, at a surface's distance, by which the surface has moved in the world from
-// which on other light falls on it.
-const MOVED: f32 = 0.125;
+// which on other light falls on it. Light drifts along with what is slower, until it is renewed.
+const MOVED: f32 = 0.015625;
 
 // `shared/identity.wgsl`.
 fn identity_of(marked_instance: u32, now: vec3f, before: vec4f) -> vec2u {

@@ -72,6 +72,8 @@ fn error(settings: &Settings, steps: f32, times: usize, at: impl Fn(f32) -> Mat4
 fn what_moves_or_turns_has_the_light_of_where_it_is() {
     let to = |x: f32, z: f32| Mat4::from_translation(Vec3::new(x, 0.0, z));
     let slides = |frame: f32| to(-2.0 + 0.16 * frame, 0.0);
+    // By less than an eighth of a pixel a frame, for which light would drift along.
+    let creeps = |frame: f32| to(0.3 + 0.006 * frame, 0.0);
     let turns = |frame: f32| to(0.4, 0.0) * Mat4::from_rotation_y(0.06 * frame);
     // Along the line of sight: its pixels hardly move.
     let approaches = |frame: f32| to(0.0, -0.9 + 0.06 * frame);
@@ -86,6 +88,7 @@ fn what_moves_or_turns_has_the_light_of_where_it_is() {
         };
         for (way, steps, at) in [
             ("slides", 0.0, &slides as &dyn Fn(f32) -> _),
+            ("creeps", 0.0, &creeps),
             ("turns", 0.0, &turns),
             ("approaches", 0.0, &approaches),
             ("slides past a camera that moves", 0.02, &slides),
