@@ -55,8 +55,8 @@ pub fn check(settings: &Settings) -> anyhow::Result<()> {
     Ok(settings.validate(&boundless)?)
 }
 
-/// Reads a settings file, and whether it says how large the picture is. The name of a
-/// lens's file counts from its folder.
+/// Reads a settings file, and whether it says how large the picture is. Names of files in it, a
+/// lens's too, count from its folder.
 ///
 /// # Errors
 /// Where it cannot be read, and where it is wrong, with line and key.
@@ -66,7 +66,12 @@ pub fn read(path: &Path) -> anyhow::Result<(Settings, bool)> {
     let name = path.display().to_string();
     let folder = path.parent().unwrap_or(Path::new(""));
     let text = with_lens(text, folder, &name)?;
-    let settings = from_text(&text, &name)?;
+    let settings = from_text(&text, &name)?.with(|s| {
+        let images = [&mut s.coarse.image_name, &mut s.lighting.environment_image];
+        for image in images.into_iter().filter(|image| !image.is_empty()) {
+            *image = folder.join(&*image).display().to_string();
+        }
+    });
     let given: Table = toml::from_str(&text)?;
     Ok((settings, gives_size(&given)))
 }

@@ -21,15 +21,25 @@ impl App {
     pub(crate) fn save_settings(&mut self, context: &egui::Context) {
         let path = PathBuf::from(&self.settings_file);
         let written = self
-            .settings_text()
+            .settings_text(&path)
             .and_then(|text| (self.host.write_file)(&path, text.as_bytes()));
         self.tell_of(context, "Settings saved", &path, written);
     }
 
-    /// The settings as a file has them; without a size where that is the window's.
-    fn settings_text(&self) -> anyhow::Result<String> {
+    /// The settings as the file `path` has them; without a size where that is the window's.
+    fn settings_text(&self, path: &Path) -> anyhow::Result<String> {
+        let is_here = path.parent().is_some_and(|folder| folder == Path::new(""));
+        let settings = self.settings.clone().with(|s| {
+            let images = [&mut s.coarse.image_name, &mut s.lighting.environment_image];
+            // In another folder's file their names would count from there.
+            for image in images.into_iter().filter(|i| !is_here && !i.is_empty()) {
+                if let Ok(path) = std::path::absolute(&*image) {
+                    *image = path.display().to_string();
+                }
+            }
+        });
         // A table of values would lose the list's order, and have numbers of 64 bits.
-        let text = toml::to_string(&self.settings)?;
+        let text = toml::to_string(&settings)?;
         let sizes = ["width = ", "height = "];
         let is_kept =
             |line: &&str| !self.display.fit || !sizes.iter().any(|size| line.starts_with(size));
@@ -126,7 +136,7 @@ mod tests {
     #[test]
     fn saved_settings_read_as_people_write_them_in_the_lists_order() {
         let app = app();
-        let text = app.settings_text().unwrap();
+        let text = app.settings_text(Path::new("s.toml")).unwrap();
         for line in ["contrast-threshold = 0.04", "ipd = 0.063"] {
             assert!(text.lines().any(|l| l == line), "{line}: {text}");
         }
@@ -134,6 +144,21 @@ mod tests {
         let of_size = |key: &&str| ["width", "height"].contains(key);
         let listed = foveal::Settings::ALL.iter().map(|setting| setting.key);
         assert_eq!(keys, listed.filter(|key| !of_size(key)).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn images_are_found_from_the_folder_that_settings_are_saved_in() {
+        let mut app = app();
+        app.settings.lighting.environment_image = "court.hdr".to_owned();
+        let full = std::path::absolute("court.hdr")
+            .unwrap()
+            .display()
+            .to_string();
+        for (file, image) in [("s.toml", "court.hdr"), ("looks/s.toml", &full)] {
+            let table: Table = app.settings_text(Path::new(file)).unwrap().parse().unwrap();
+            assert_eq!(table["environment-image"].as_str(), Some(image), "{file}");
+            assert_eq!(table["rate-image"].as_str(), Some(""), "{file}");
+        }
     }
 
     #[test]

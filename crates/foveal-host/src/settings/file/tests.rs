@@ -238,6 +238,20 @@ fn a_lens_may_be_a_file_beside_the_settings() {
 }
 
 #[test]
+fn names_of_images_count_from_the_settings_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.toml");
+    let beside = folder.path().join("court.hdr").display().to_string();
+    for (name, found) in [("court.hdr", &*beside), ("/a.hdr", "/a.hdr"), ("", "")] {
+        let text = format!("environment-image = '{name}'\nrate-image = '{name}'\n");
+        std::fs::write(&path, text).unwrap();
+        let settings = read(&path).unwrap().0;
+        assert_eq!(settings.lighting.environment_image, found);
+        assert_eq!(settings.coarse.image_name, found);
+    }
+}
+
+#[test]
 fn a_wrong_settings_file_is_named_with_line_and_key() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("s.toml");
