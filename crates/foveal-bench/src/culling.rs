@@ -113,6 +113,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     if let Some(file) = json_file {
         check_figures(file, &args.scenes)?;
     }
+    scene_source::check_once(&args.scenes)?;
     let rows = measure(args)?;
     if args.json.is_some() {
         let report = Report {

@@ -171,6 +171,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         given => given.to_vec(),
     };
     args.camera.check()?;
+    scene_source::check_once(&scenes)?;
     let gpu = args.figures.begin(&scenes)?;
     let (ways, skipped) = usable(&gpu)?;
     let mut rows = Vec::new();

@@ -103,6 +103,8 @@ fn words_that_contradict_each_other_are_usage_errors() {
         ("compare a.png b.png --heat-map -", ".png"),
         ("bench diff a.json b.json --page ./b.json", "is compared"),
         ("bench all - --report r", "standard input"),
+        ("bench stereo - cornell -", "standard input"),
+        ("bench culling - -", "standard input"),
         ("bench verdict --json triangle.glb", "must end in .json"),
         ("bench culling --json triangle.glb", "must end in .json"),
         ("cull --depth a.png --overlay ./a.png", "same file"),

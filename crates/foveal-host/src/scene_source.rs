@@ -11,6 +11,7 @@ use foveal_generate::{DemoOptions, GenerateError};
 use foveal_scene::{Camera, Clip, LoadOptions, LoadTimings, Scene, TextureCompression};
 
 use crate::atomic_file;
+use crate::failure::usage;
 use crate::import_args::{self, NoSuchScene};
 
 /// What is drawn without SCENE.
@@ -72,6 +73,14 @@ pub fn load_among(name: &str, options: &LoadOptions) -> anyhow::Result<Scene> {
         return load_with(name, &options);
     }
     load_with(name, options)
+}
+
+/// Refuses several scenes that are all read from standard input, which has one.
+pub fn check_once(scenes: &[String]) -> anyhow::Result<()> {
+    if scenes.iter().filter(|name| *name == STDIN).count() > 1 {
+        return usage("standard input has one scene; name - once");
+    }
+    Ok(())
 }
 
 /// As [`load_with`] by the importer's default options.
