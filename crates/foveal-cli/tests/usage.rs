@@ -103,6 +103,7 @@ fn words_that_contradict_each_other_are_usage_errors() {
         ("compare a.png b.png --heat-map -", ".png"),
         ("bench diff a.json b.json --page ./b.json", "is compared"),
         ("bench all - --report r", "standard input"),
+        ("render -o a.png --warmup 1000001", "1000000"),
         ("bench stereo - cornell -", "standard input"),
         ("bench culling - -", "standard input"),
         ("bench verdict --json triangle.glb", "must end in .json"),

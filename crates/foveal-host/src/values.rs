@@ -189,6 +189,14 @@ pub fn bytes(text: &str) -> Result<u64, String> {
 /// Most frames of one sequence: each has a file's name and figures in memory.
 const MOST_FRAMES: u32 = 1_000_000;
 
+/// A number of frames, none or as many as one sequence has.
+pub fn frame_count(text: &str) -> Result<u32, String> {
+    match text.trim().parse::<u32>() {
+        Ok(count) if count <= MOST_FRAMES => Ok(count),
+        _ => Err(format!("a number from 0 to {MOST_FRAMES} is needed")),
+    }
+}
+
 /// Most point lights that a renderer takes.
 const MOST_LIGHTS: u32 = 16_384;
 
@@ -276,6 +284,7 @@ mod tests {
         }
         assert!(frames("0..4294967295").is_err_and(|e| e.contains("the limit is 1000000")));
         assert!(point_lights("4294967295").is_err_and(|e| e.contains("16384")));
+        assert!(frame_count("1000001").is_err_and(|e| e.contains("1000000")));
         assert!(threshold("-1").is_err() && threshold("nan").is_err());
         assert!(positive("0").is_err() && time_s("-1").is_err());
     }

@@ -79,7 +79,7 @@ pub(crate) struct Args {
 
     /// Number of frames before the first that are drawn, but neither measured nor written: those
     /// 1 / fps, 2 / fps .. seconds earlier. Nothing is before the moment 0, which stands in for them
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::frame_count)]
     pub(super) warmup: u32,
 
     /// Print nothing but errors
