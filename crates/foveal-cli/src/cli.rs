@@ -1,6 +1,6 @@
 //! The command line's first level: which subcommand.
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::{adapters, compare, completions, cull, render, scene_info, view};
 use foveal_bench::BenchCommand;
@@ -17,6 +17,26 @@ use foveal_bench::BenchCommand;
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+impl Cli {
+    /// Reads the command line; ends the program where it is wrong, or asks for help.
+    pub(crate) fn read() -> Self {
+        let mut command = with_negative_numbers(Self::command());
+        let matches = command.get_matches_mut();
+        Self::from_arg_matches(&matches).unwrap_or_else(|error| error.format(&mut command).exit())
+    }
+}
+
+/// Takes numbers below zero for the values of flags, which say themselves why they are none, and not
+/// for unknown flags.
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    command
+        .mut_args(|arg| {
+            let is_value = arg.get_action().takes_values() && !arg.is_positional();
+            arg.allow_negative_numbers(is_value)
+        })
+        .mut_subcommands(with_negative_numbers)
 }
 
 /// What to do.
@@ -82,7 +102,7 @@ mod tests {
 
     #[test]
     fn the_arguments_do_not_contradict_each_other() {
-        super::Cli::command().debug_assert();
+        super::with_negative_numbers(super::Cli::command()).debug_assert();
     }
 
     /// A heading holds for the flags of its group alone, not for those that come after it.

@@ -18,13 +18,13 @@ mod view;
 
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser};
+use clap::CommandFactory;
 use cli::{Cli, Command, SceneCommand};
 use foveal_host::failure;
 
 fn main() -> ExitCode {
     quiet::hush();
-    let cli = Cli::parse();
+    let cli = Cli::read();
     let name = cli.command.name();
     failure::report(name, || match cli.command {
         Command::Render(args) => render::run(&args),
