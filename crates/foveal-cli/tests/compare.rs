@@ -220,6 +220,12 @@ fn a_display_adds_the_quality_at_the_gaze() {
         "jod",
     );
     assert!(dark < 10.0 && bright < 10.0 && dark != bright);
+    // What it was measured by is said, with what was changed of it.
+    let seen = &at("b.png", &["--display", "fhd", "--peak", "150"])["display"];
+    let number = |name: &str| seen[name].as_f64().unwrap();
+    let light = ["peak_cd_m2", "ambient_lux", "contrast"].map(number);
+    assert_eq!(light, [150.0, 250.0, 1000.0]);
+    assert!((number("degrees_across") - 47.8).abs() < 1e-3);
 }
 
 #[test]

@@ -54,6 +54,32 @@ pub(super) struct Verdict {
     pub(super) pixels_per_degree: f32,
     /// As fractions of the picture.
     pub(super) gaze: [f32; 2],
+    /// What the picture fills.
+    pub(super) display: Seen,
+}
+
+/// A display with its light, whatever name it was asked for by.
+#[derive(Debug, PartialEq, Serialize)]
+pub(super) struct Seen {
+    degrees_across: f32,
+    /// Luminance of white without reflected light, and by that of black.
+    peak_cd_m2: f32,
+    contrast: f32,
+    ambient_lux: f32,
+    /// The part of that light which is reflected.
+    reflectivity: f32,
+}
+
+impl From<&Display> for Seen {
+    fn from(display: &Display) -> Self {
+        Self {
+            degrees_across: display.degrees_across(),
+            peak_cd_m2: display.peak,
+            contrast: display.contrast,
+            ambient_lux: display.ambient_lux,
+            reflectivity: display.reflectivity,
+        }
+    }
 }
 
 impl EyeArgs {
@@ -91,11 +117,12 @@ impl EyeArgs {
     }
 
     /// What is said of a quality.
-    pub(super) fn verdict(&self, metric: &Metric, jod: f32) -> Verdict {
+    pub(super) fn verdict(&self, display: &Display, metric: &Metric, jod: f32) -> Verdict {
         Verdict {
             jod,
             pixels_per_degree: metric.pixels_per_degree(),
             gaze: self.gaze(),
+            display: display.into(),
         }
     }
 
@@ -109,7 +136,7 @@ impl EyeArgs {
         let metric = self.metric(display, a)?;
         let comparison = metric.compare(pixels(a), pixels(b))?;
         self.write_heat_map(&comparison.heat_map)?;
-        Ok(self.verdict(&metric, comparison.jod))
+        Ok(self.verdict(display, &metric, comparison.jod))
     }
 
     /// Writes the heat map where one was asked for.
@@ -125,8 +152,15 @@ impl Verdict {
     /// Lines for the terminal.
     pub(super) fn text(&self) -> String {
         let [x, y] = self.gaze;
+        let Seen {
+            degrees_across,
+            peak_cd_m2,
+            ambient_lux,
+            ..
+        } = self.display;
         format!(
-            "JOD         {:.3} at {:.1} pixels per degree, gaze {x},{y}\n",
+            "JOD         {:.3} at {:.1} pixels per degree, gaze {x},{y}\n\
+             display     {degrees_across:.1} degrees across, {peak_cd_m2} cd/m², in {ambient_lux} lux\n",
             self.jod, self.pixels_per_degree
         )
     }

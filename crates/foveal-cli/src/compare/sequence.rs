@@ -87,7 +87,7 @@ fn compare(args: &Args) -> anyhow::Result<Comparison> {
         height: size.height,
         frames: result.frames,
         fps,
-        eye: args.eye.verdict(&metric, result.jod),
+        eye: args.eye.verdict(&display, &metric, result.jod),
         flicker: result.flicker,
         flip: flip / result.frames as f64,
         passed: true,
