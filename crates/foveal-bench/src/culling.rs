@@ -111,7 +111,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let json_to_stdout = args.json.as_deref() == Some(Path::new("-"));
     let json_file = args.json.as_ref().filter(|_| !json_to_stdout);
     if let Some(file) = json_file {
-        check_figures(file, &args.scenes)?;
+        let cameras = match &args.cameras {
+            Some(cameras::Choice::File(cameras)) => Some(cameras.as_path()),
+            _ => None,
+        };
+        check_figures(file, &args.scenes, cameras)?;
     }
     scene_source::check_once(&args.scenes)?;
     let rows = measure(args)?;

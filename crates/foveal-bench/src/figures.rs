@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use foveal::Gpu;
 use serde::Serialize;
 
+use foveal_host::camera::CameraArgs;
 use foveal_host::clock::now_ms;
 use foveal_host::failure::usage;
 use foveal_host::{atomic_file, console, gpu, scene_source};
@@ -21,12 +22,20 @@ pub(super) struct FigureArgs {
     json: Option<PathBuf>,
 }
 
-/// Fails where figures cannot be written to `file`, or would replace a scene: one of `scenes`, or one that
-/// was meant to be measured and not to be written, as after a `--json` that stands before it.
-pub(super) fn check_figures(file: &Path, scenes: &[String]) -> anyhow::Result<()> {
+/// Fails where figures cannot be written to `file`, or would replace the file of cameras or a scene: one
+/// of `scenes`, or one that was meant to be measured and not to be written, as after a `--json` that
+/// stands before it.
+pub(super) fn check_figures(
+    file: &Path,
+    scenes: &[String],
+    cameras: Option<&Path>,
+) -> anyhow::Result<()> {
     let replaces = |scene: &String| scene_source::is_replaced_by(scene, file);
     if scenes.iter().any(replaces) {
         return usage("--json names the scene's own file");
+    }
+    if cameras.is_some_and(|read| atomic_file::replaces(file, read)) {
+        return usage("--json names the camera's own file");
     }
     if file
         .extension()
@@ -46,11 +55,11 @@ impl FigureArgs {
     }
 
     /// Starts the clock and opens the device. Fails where the figures could not be written later, as
-    /// nothing shall be measured for nothing, or would replace one of `scenes`.
-    pub(super) fn begin(&self, scenes: &[String]) -> anyhow::Result<Gpu> {
+    /// nothing shall be measured for nothing, or would replace one of `scenes` or the camera's path.
+    pub(super) fn begin(&self, scenes: &[String], camera: &CameraArgs) -> anyhow::Result<Gpu> {
         now_ms();
         if let Some(file) = self.file() {
-            check_figures(file, scenes)?;
+            check_figures(file, scenes, camera.path_file())?;
         }
         gpu::open(self.adapter.as_deref())
     }

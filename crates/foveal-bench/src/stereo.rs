@@ -172,7 +172,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     };
     args.camera.check()?;
     scene_source::check_once(&scenes)?;
-    let gpu = args.figures.begin(&scenes)?;
+    let gpu = args.figures.begin(&scenes, &args.camera)?;
     let (ways, skipped) = usable(&gpu)?;
     let mut rows = Vec::new();
     for name in &scenes {

@@ -114,7 +114,7 @@ impl SubjectArgs {
     /// camera's flags contradict each other.
     pub(super) fn begin(&self) -> anyhow::Result<Gpu> {
         self.camera.check()?;
-        self.figures.begin(std::slice::from_ref(&self.scene))
+        (self.figures).begin(std::slice::from_ref(&self.scene), &self.camera)
     }
 
     /// The scene as its file has it.

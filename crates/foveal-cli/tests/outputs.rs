@@ -68,6 +68,22 @@ fn radiance_exposed_and_encoded_is_the_picture() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn settings_through_a_pipe_hold_for_radiance() {
+    let folder = folder();
+    let words = ["render", "cornell", "-q", "-o", "a.exr"];
+    let words = [&words[..], &["--settings", "/dev/stdin"]].concat();
+    let mut child = (command(folder.path(), &words).stdin(Stdio::piped()))
+        .spawn()
+        .unwrap();
+    let settings = b"width = 10\nheight = 20\n";
+    child.stdin.take().unwrap().write_all(settings).unwrap();
+    assert!(child.wait().unwrap().success());
+    let picture = image::open(folder.path().join("a.exr")).unwrap();
+    assert_eq!((picture.width(), picture.height()), (10, 20));
+}
+
 #[test]
 fn radiance_of_what_has_none_is_refused() {
     let folder = folder();

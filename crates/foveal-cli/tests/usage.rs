@@ -103,14 +103,14 @@ fn words_that_contradict_each_other_are_usage_errors() {
         ("compare a.png b.png --heat-map -", ".png"),
         ("bench diff a.json b.json --page ./b.json", "is compared"),
         ("bench all - --report r", "standard input"),
+        ("bench stereo - cornell -", "standard input"),
+        ("bench culling - -", "standard input"),
+        ("render -o a.png --warmup 1000001", "1000000"),
         ("render -o a.png --time -1", "0 or later"),
         ("render -o a_#.png --frames 3 --fps -1", "greater than 0"),
         ("render -o a.png --fov -1", "between 0 and 180"),
         ("compare a.png b.png --max-flip -1", "0 or more"),
         ("compare a.png b.png --ambient -1", "0 or more"),
-        ("render -o a.png --warmup 1000001", "1000000"),
-        ("bench stereo - cornell -", "standard input"),
-        ("bench culling - -", "standard input"),
         ("bench verdict --json triangle.glb", "must end in .json"),
         ("bench culling --json triangle.glb", "must end in .json"),
         ("cull --depth a.png --overlay ./a.png", "same file"),
@@ -148,6 +148,49 @@ fn no_file_is_written_over_the_scene() {
         assert!(said.contains("the scene's own file"), "{said}");
     }
     assert!(std::fs::read(&scene).unwrap() == before);
+}
+
+/// Names and bytes of a folder's files.
+fn contents(folder: &std::path::Path) -> Vec<(String, Vec<u8>)> {
+    let read = |name: String| {
+        let bytes = std::fs::read(folder.join(&name)).unwrap();
+        (name, bytes)
+    };
+    names(folder).into_iter().map(read).collect()
+}
+
+#[test]
+fn no_file_is_written_over_one_that_is_read() {
+    let folder = folder();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write(
+        "walk.json",
+        r#"[{"eye": [0, 1, 3], "target": [0, 1, 0]}, {"eye": [1, 1, 3], "target": [0, 1, 0]}]"#,
+    );
+    write(
+        "s.toml",
+        "exposure = 1.0\nenvironment-image = \"sky.hdr\"\n",
+    );
+    for name in ["rate.png", "sky.hdr"] {
+        write(name, "a picture");
+    }
+    let before = contents(folder.path());
+    for line in [
+        "render cornell -o a.png --path walk.json --stats ./walk.json",
+        "render cornell -o a.png --settings s.toml --stats s.toml",
+        "render cornell -o sky.hdr --settings s.toml",
+        "render cornell -o rate.png --shading coarse --rate ./rate.png",
+        "cull cornell --cameras walk.json --json walk.json",
+        "bench culling cornell --cameras walk.json --json walk.json",
+        "bench verdict cornell --path walk.json --json walk.json",
+        "bench stereo cornell --path walk.json --json walk.json",
+    ] {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let output = foveal_in(folder.path(), &words);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "foveal {line}: {said}");
+    }
+    assert!(contents(folder.path()) == before);
 }
 
 #[test]

@@ -49,6 +49,11 @@ pub fn any_twice<'a>(paths: impl IntoIterator<Item = &'a Path>) -> bool {
         .any(|path| !seen.insert(one_spelling(path)))
 }
 
+/// Whether a file that is to be written would replace one that is read.
+pub fn replaces(written: &Path, read: &Path) -> bool {
+    read.is_file() && any_twice([read, written])
+}
+
 /// The same path for every way to write a file's path, whether the file exists or not.
 fn one_spelling(path: &Path) -> PathBuf {
     let path = destination(path).unwrap_or_else(|_| path.to_owned());

@@ -90,8 +90,7 @@ pub fn load(name: &str) -> anyhow::Result<Scene> {
 
 /// Whether a file that is to be written would replace the scene's own.
 pub fn is_replaced_by(name: &str, file: &Path) -> bool {
-    let own = Path::new(name);
-    name != STDIN && own.is_file() && atomic_file::any_twice([own, file])
+    name != STDIN && atomic_file::replaces(file, Path::new(name))
 }
 
 fn from_file(

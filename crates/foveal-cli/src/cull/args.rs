@@ -74,8 +74,12 @@ impl Args {
         if atomic_file::any_twice(written.clone()) {
             return usage("--depth, --overlay and --json name the same file");
         }
-        if { written }.any(|file| scene_source::is_replaced_by(&self.scene, file)) {
+        if (written.clone()).any(|file| scene_source::is_replaced_by(&self.scene, file)) {
             return usage("--depth, --overlay or --json names the scene's own file");
+        }
+        let cameras = self.views.file();
+        if cameras.is_some_and(|read| { written }.any(|file| atomic_file::replaces(file, read))) {
+            return usage("--depth, --overlay or --json names the file of cameras");
         }
         if is_recording(&self.scene) && self.views.is_given() {
             return usage("recorded draws have their own view: no camera can be chosen");

@@ -221,25 +221,50 @@ impl Args {
                     file.display()
                 ));
             }
-            if format.is_some_and(PictureFormat::is_linear) {
-                self.check_linear(file)?;
-            }
         }
         self.camera.check()?;
-        let written = [file, self.video.as_deref(), self.stats.as_deref()];
-        if atomic_file::any_twice(written.into_iter().flatten()) {
+        if atomic_file::any_twice(self.written()) {
             return usage("--output, --video and --stats name the same file");
         }
         let replaces = |file| scene_source::is_replaced_by(&self.scene, file);
-        if written.into_iter().flatten().any(replaces) {
+        if self.written().any(replaces) {
             return usage("--output, --video or --stats names the scene's own file");
         }
         Ok(())
     }
 
+    /// The files that are written.
+    fn written(&self) -> impl Iterator<Item = &Path> {
+        let files = [self.output(), self.video.as_deref(), self.stats.as_deref()];
+        files.into_iter().flatten()
+    }
+
+    /// Finds what the settings contradict, which are read once: they may come through a pipe.
+    pub(super) fn check_beside(&self, settings: &Settings) -> anyhow::Result<()> {
+        let images = [
+            &settings.lighting.environment_image,
+            &settings.coarse.image_name,
+        ];
+        let read = [self.settings.file(), self.camera.path_file()];
+        let read = (read.into_iter().flatten()).chain(images.map(Path::new));
+        for read in read {
+            if (self.written()).any(|file| atomic_file::replaces(file, read)) {
+                return usage(format!(
+                    "--output, --video or --stats names '{}', which is read",
+                    read.display()
+                ));
+            }
+        }
+        match self.output() {
+            Some(file) if PictureFormat::of(file).is_some_and(PictureFormat::is_linear) => {
+                self.check_linear(file, settings)
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Files of radiance hold what is there before tone map, lenses and colour glasses.
-    fn check_linear(&self, file: &Path) -> anyhow::Result<()> {
-        let settings = self.settings()?;
+    fn check_linear(&self, file: &Path, settings: &Settings) -> anyhow::Result<()> {
         let refuse = |setting: &str| {
             usage(format!(
                 "'{}' holds radiance, which {setting} does not change or has none of: write a .png, or leave it out",

@@ -42,6 +42,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     now_ms();
     args.check()?;
     let settings = args.settings()?;
+    args.check_beside(&settings)?;
     let wanted = jobs(args)?;
     let total = wanted.len();
     let skips = args.frames.skip_existing || args.frames.share;

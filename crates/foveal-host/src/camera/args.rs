@@ -1,5 +1,7 @@
 //! The flags that say where a frame is seen from.
 
+use std::path::Path;
+
 use foveal_scene::Camera;
 use glam::Vec3;
 
@@ -72,6 +74,12 @@ impl CameraArgs {
     /// Finds what clap cannot: contradictions between the values of several arguments.
     pub fn check(&self) -> anyhow::Result<()> {
         check_direction(self.eye, self.target, self.up)
+    }
+
+    /// The file of the path, where it is one.
+    pub fn path_file(&self) -> Option<&Path> {
+        let is_named = |path: &&str| !["demo", "sway", "turntable"].contains(path);
+        self.path.as_deref().filter(is_named).map(Path::new)
     }
 
     /// The same along a path; one that is asked for already stays. Where the scene has a path of

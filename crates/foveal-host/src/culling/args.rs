@@ -1,6 +1,6 @@
 //! The flags of culling: what occludes, and where it is seen from.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
@@ -96,6 +96,11 @@ impl ViewArgs {
     pub fn is_given(&self) -> bool {
         let is_placed = self.camera.is_some() || self.eye.is_some();
         is_placed || self.fov.is_some() || self.cameras.is_some()
+    }
+
+    /// The file of cameras, where there is one.
+    pub fn file(&self) -> Option<&Path> {
+        self.cameras.as_deref()
     }
 
     /// Finds what clap cannot: contradictions between the values of several arguments.

@@ -235,6 +235,11 @@ impl clap::FromArgMatches for SettingsArgs {
 }
 
 impl SettingsArgs {
+    /// The settings file, where there is one.
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
     /// Whether the flag `--key` is given.
     pub fn gives(&self, key: &str) -> bool {
         self.given.contains_key(key)
