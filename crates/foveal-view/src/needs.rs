@@ -2,8 +2,8 @@
 
 use foveal::{
     AmbientOcclusion, Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, DebugView,
-    EnvironmentSource, EyeFrusta, Geometry, Output, RateCombine, RateSource, Settings, Shading,
-    Shadows, Stereo,
+    EnvironmentSource, EyeFrusta, Geometry, Gpu, Output, RateCombine, RateSource, Settings,
+    Shading, Shadows, Stereo,
 };
 use toml::{Table, Value};
 
@@ -11,6 +11,8 @@ use toml::{Table, Value};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Abilities {
     pub(crate) clip_distances: bool,
+    /// The reduced renderer draws.
+    pub(crate) is_reduced: bool,
 }
 
 /// Why the setting `key` has no effect beside these settings; `None` where it has one.
@@ -22,6 +24,9 @@ pub(crate) fn missing(
     compares: bool,
 ) -> Option<&'static str> {
     let unless = |has_effect: bool, why| (!has_effect).then_some(why);
+    if abilities.is_reduced && is_beyond_reduced(key, s) {
+        return Some("Needs a device with Vulkan, Metal or Direct3D 12; this one has OpenGL alone");
+    }
     let shading = s.shading.mode;
     let (coarse, variable) = (shading == Shading::Coarse, shading == Shading::Variable);
     let stereo = s.is_stereo();
@@ -172,6 +177,19 @@ fn history(s: &Settings) -> Option<&'static str> {
     }
 }
 
+/// Whether the reduced renderer lacks a setting. One that is refused there as it is can be changed.
+fn is_beyond_reduced(key: &str, s: &Settings) -> bool {
+    let setting = Settings::ALL.iter().find(|setting| setting.key == key);
+    let is_refused = || {
+        let refused = s.validate(&wgpu::Limits {
+            max_texture_dimension_2d: u32::MAX,
+            ..Gpu::reduced_limits()
+        });
+        matches!(refused, Err(foveal::Error::Setting { name, .. }) if name == key)
+    };
+    setting.is_some_and(|setting| !setting.is_in_reduced_set()) && !is_refused()
+}
+
 fn clipping(s: &Settings, abilities: Abilities) -> Option<&'static str> {
     if !abilities.clip_distances {
         Some("Needs a device with clip distances; this one has none, and discards")
@@ -267,6 +285,7 @@ mod tests {
 
     const CLIPS: Abilities = Abilities {
         clip_distances: true,
+        is_reduced: false,
     };
 
     fn none(key: &str, s: &Settings) -> Option<&'static str> {
@@ -354,6 +373,25 @@ mod tests {
         );
         let discards = s.with(|s| s.stereo.clipping = EyeClipping::Discard);
         assert!(missing("eye-clipping", &discards, Abilities::default(), false).is_some());
+    }
+
+    #[test]
+    fn the_reduced_renderer_has_what_its_set_has_and_lets_what_it_refuses_be_changed() {
+        let reduced = Abilities {
+            is_reduced: true,
+            ..Abilities::default()
+        };
+        let note = |key: &str, s: &Settings| missing(key, s, reduced, false);
+        let s = Settings::default();
+        for key in ["aa", "shading", "shadows", "view", "display", "samples"] {
+            assert!(note(key, &s).is_some_and(|n| n.contains("OpenGL")), "{key}");
+        }
+        for key in ["exposure", "culling", "stereo", "environment"] {
+            assert_eq!(note(key, &s), None, "{key}");
+        }
+        let coarse = s.with(|s| s.shading.mode = Shading::Coarse);
+        assert_eq!(note("shading", &coarse), None);
+        assert!(note("aa", &coarse).is_some());
     }
 
     #[test]

@@ -63,6 +63,7 @@ impl Drawing {
         let features = gpu.device.features();
         let abilities = Abilities {
             clip_distances: features.contains(wgpu::Features::CLIP_DISTANCES),
+            is_reduced: gpu.is_reduced(),
         };
         self.gpu = Some(gpu);
         Ok(Some((adapter, abilities)))
