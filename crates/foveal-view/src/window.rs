@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use winit::application::ApplicationHandler;
 use winit::dpi::{LogicalSize, PhysicalSize};
 use winit::event::WindowEvent;
@@ -21,6 +21,7 @@ struct Wake;
 pub(crate) fn run(host: Host) -> anyhow::Result<()> {
     let event_loop = EventLoop::<Wake>::with_user_event()
         .build()
+        .map_err(|error| what_it_said(&error))
         .context("cannot open a window: there is no display")?;
     let mut handler = Handler {
         proxy: event_loop.create_proxy(),
@@ -129,6 +130,7 @@ impl Open {
         let window = Arc::new(
             event_loop
                 .create_window(attributes)
+                .map_err(|error| what_it_said(&error))
                 .context("cannot open a window")?,
         );
         let graphics = Graphics::new(&window, waker(&proxy))?;
@@ -206,6 +208,14 @@ impl Open {
     }
 }
 
+/// An error of winit's without the place in its source that it begins with.
+fn what_it_said(error: &impl std::fmt::Display) -> anyhow::Error {
+    let text = error.to_string();
+    let place_and_cause = text.split_once(".rs:");
+    let cause = place_and_cause.and_then(|(_, line)| line.split_once(": "));
+    anyhow!("{}", cause.map_or(text.as_str(), |(_, cause)| cause))
+}
+
 /// Has the window drawn again, from any thread.
 fn waker(proxy: &EventLoopProxy<Wake>) -> impl Fn() + Send + Sync + 'static {
     let proxy = proxy.clone();
@@ -219,4 +229,19 @@ fn input(context: egui::Context, window: &Window, graphics: &Graphics) -> egui_w
     crate::look::apply(&context);
     let largest = Some(graphics.largest_texture());
     egui_winit::State::new(context, egui::ViewportId::ROOT, window, None, None, largest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_name_no_place_in_the_source_of_winit() {
+        let said = |text: &str| what_it_said(&text).to_string();
+        assert_eq!(
+            said("os error at /home/eva/winit/src/linux/mod.rs:788: no X server: refused"),
+            "no X server: refused"
+        );
+        assert_eq!(said("Exit Failure: 1"), "Exit Failure: 1");
+    }
 }
