@@ -15,6 +15,9 @@ struct Sorted {
     others: Vec<PathBuf>,
 }
 
+/// Endings of files that scenes name: given together with a scene they are its own business.
+const PARTS: [&str; 7] = ["bin", "mtl", "png", "jpg", "jpeg", "webp", "ktx2"];
+
 /// Endings of scene files, as a list for people.
 pub(crate) fn endings() -> String {
     let all: Vec<String> = ENDINGS.iter().map(|ending| format!(".{ending}")).collect();
@@ -24,15 +27,21 @@ pub(crate) fn endings() -> String {
 fn sorted(files: impl IntoIterator<Item = PathBuf>) -> Sorted {
     let mut found = Sorted::default();
     for file in files {
-        let ending = file.extension().and_then(|e| e.to_str());
-        let ending = ending.unwrap_or_default().to_ascii_lowercase();
-        match ending.as_str() {
+        match ending(&file).as_str() {
             known if ENDINGS.contains(&known) => found.scenes.push(file),
             "toml" => found.settings.push(file),
             _ => found.others.push(file),
         }
     }
+    if !found.scenes.is_empty() {
+        (found.others).retain(|file| !PARTS.contains(&ending(file).as_str()));
+    }
     found
+}
+
+fn ending(file: &Path) -> String {
+    let ending = file.extension().and_then(|e| e.to_str());
+    ending.unwrap_or_default().to_ascii_lowercase()
 }
 
 impl App {
@@ -99,11 +108,15 @@ mod tests {
     #[test]
     fn files_are_told_apart_by_their_endings() {
         let found = sorted(paths(&[
-            "a.GLB", "b.gltf", "c.toml", "d.png", "e.obj", "folder",
+            "a.GLB", "b.gltf", "c.toml", "d.txt", "e.obj", "folder",
         ]));
         assert_eq!(found.scenes, paths(&["a.GLB", "b.gltf", "e.obj"]));
         assert_eq!(found.settings, paths(&["c.toml"]));
-        assert_eq!(found.others, paths(&["d.png", "folder"]));
+        assert_eq!(found.others, paths(&["d.txt", "folder"]));
+        // What a scene names is looked for beside it.
+        let found = sorted(paths(&["b.gltf", "b.bin", "wood.PNG"]));
+        assert_eq!(found.others, paths(&[]));
+        assert_eq!(sorted(paths(&["wood.png"])).others, paths(&["wood.png"]));
     }
 
     #[test]
