@@ -87,7 +87,8 @@ pub(crate) fn from_bytes(name: &str, bytes: &[u8], beside: &Beside) -> Result<Sc
     let outside = |uri: &str| {
         beside.get(uri).cloned().ok_or_else(|| {
             format!(
-                "\"{uri}\" lies beside the file, where a page cannot look; give both at once, or a .glb that holds everything"
+                "\"{uri}\" lies beside the file, where a page cannot look; give both at once, \
+                 or a .glb that holds everything"
             )
         })
     };
