@@ -383,10 +383,17 @@ mod tests {
         };
         let note = |key: &str, s: &Settings| missing(key, s, reduced, false);
         let s = Settings::default();
-        for key in ["aa", "shading", "shadows", "view", "display", "samples"] {
+        for key in [
+            "aa",
+            "shading",
+            "light-radius",
+            "view",
+            "display",
+            "samples",
+        ] {
             assert!(note(key, &s).is_some_and(|n| n.contains("OpenGL")), "{key}");
         }
-        for key in ["exposure", "culling", "stereo", "environment"] {
+        for key in ["exposure", "culling", "stereo", "environment", "shadows"] {
             assert_eq!(note(key, &s), None, "{key}");
         }
         let coarse = s.with(|s| s.shading.mode = Shading::Coarse);
