@@ -2,10 +2,13 @@
 
 use foveal::{
     AmbientOcclusion, Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, DebugView,
-    EnvironmentSource, EyeFrusta, Geometry, Gpu, Output, RateCombine, RateSource, Settings,
-    Shading, Shadows, Stereo,
+    EnvironmentSource, EyeFrusta, Geometry, Gpu, Output, RateCombine, RateSource, Setting,
+    Settings, Shading, Shadows, Stereo,
 };
 use toml::{Table, Value};
+
+const BEYOND_OPENGL: &str =
+    "Needs a device with Vulkan, Metal or Direct3D 12; this one has OpenGL alone";
 
 /// What of the device settings may ask for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,7 +28,7 @@ pub(crate) fn missing(
 ) -> Option<&'static str> {
     let unless = |has_effect: bool, why| (!has_effect).then_some(why);
     if abilities.is_reduced && is_beyond_reduced(key, s) {
-        return Some("Needs a device with Vulkan, Metal or Direct3D 12; this one has OpenGL alone");
+        return Some(BEYOND_OPENGL);
     }
     let shading = s.shading.mode;
     let (coarse, variable) = (shading == Shading::Coarse, shading == Shading::Variable);
@@ -202,10 +205,20 @@ fn clipping(s: &Settings, abilities: Abilities) -> Option<&'static str> {
     }
 }
 
-/// Why `value` is impossible for the setting `key` beside the others of `draft`.
-pub(crate) fn refused(key: &str, value: &str, draft: &Table) -> Option<String> {
+/// Why a choice is impossible for a setting beside the others of `draft`, or on this device.
+pub(crate) fn refused(
+    (setting, choice): (&Setting, &str),
+    draft: &Table,
+    abilities: Abilities,
+) -> Option<String> {
+    if abilities.is_reduced
+        && setting.is_in_reduced_set()
+        && !setting.has_name_in_reduced_set(choice)
+    {
+        return Some(BEYOND_OPENGL.to_owned());
+    }
     let mut table = draft.clone();
-    table.insert(key.to_owned(), Value::from(value));
+    table.insert(setting.key.to_owned(), Value::from(choice));
     match checked(&table) {
         Ok(_) => None,
         // What is wrong already is no fault of this value.
@@ -351,15 +364,23 @@ mod tests {
 
     #[test]
     fn views_of_what_is_switched_off_are_refused_with_the_reason() {
-        let draft = Table::try_from(Settings::default()).unwrap();
+        let refused = |key, name, settings: &Settings| {
+            let draft = Table::try_from(settings).unwrap();
+            refused(choice(key, name), &draft, Abilities::default())
+        };
+        let full = Settings::default();
         for view in ["rate", "blocks", "shaded", "unknown", "edges", "samples"] {
-            assert!(refused("view", view, &draft).is_some(), "{view}");
+            assert!(refused("view", view, &full).is_some(), "{view}");
         }
-        assert_eq!(refused("view", "depth", &draft), None);
-        let coarse = Settings::default().with(|s| s.shading.mode = Shading::Coarse);
-        let draft = Table::try_from(coarse).unwrap();
-        assert_eq!(refused("view", "rate", &draft), None);
-        assert!(refused("rate", "content", &draft).is_some());
+        assert_eq!(refused("view", "depth", &full), None);
+        let coarse = full.with(|s| s.shading.mode = Shading::Coarse);
+        assert_eq!(refused("view", "rate", &coarse), None);
+        assert!(refused("rate", "content", &coarse).is_some());
+    }
+
+    fn choice<'a>(key: &str, name: &'a str) -> (&'static Setting, &'a str) {
+        let setting = Settings::ALL.iter().find(|setting| setting.key == key);
+        (setting.unwrap(), name)
     }
 
     #[test]
@@ -399,6 +420,11 @@ mod tests {
         let coarse = s.with(|s| s.shading.mode = Shading::Coarse);
         assert_eq!(note("shading", &coarse), None);
         assert!(note("aa", &coarse).is_some());
+        let draft = Table::try_from(Settings::default()).unwrap();
+        let refused = |choice| refused(choice, &draft, reduced);
+        let why = refused(choice("shadows", "contact"));
+        assert!(why.is_some_and(|why| why.contains("OpenGL")));
+        assert_eq!(refused(choice("shadows", "soft")), None);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use toml::{Table, Value};
 
 use crate::app::{App, Display};
 use crate::look;
-use crate::needs::refused;
+use crate::needs::{Abilities, refused};
 
 /// Width of the names, in points.
 const NAMES: f32 = 108.0;
@@ -52,10 +52,11 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
             .show_unindented(ui, |ui| {
                 for setting in of_stage() {
                     let missing = app.missing(setting.key);
+                    let abilities = app.abilities;
                     row(
                         ui,
                         setting,
-                        missing,
+                        (missing, abilities),
                         &mut app.draft,
                         &defaults,
                         &app.display,
@@ -119,7 +120,7 @@ fn name(ui: &mut egui::Ui, text: &str, changed: bool) -> egui::Response {
 fn row(
     ui: &mut egui::Ui,
     setting: &Setting,
-    missing: Option<&str>,
+    (missing, abilities): (Option<&str>, Abilities),
     draft: &mut Table,
     defaults: &Table,
     display: &Display,
@@ -149,7 +150,7 @@ fn row(
                 })
                 .inner;
             ui.add_enabled_ui(!follows && missing.is_none(), |ui| {
-                let refused = |choice: &str| refused(key, choice, &others);
+                let refused = |choice: &str| refused((setting, choice), &others, abilities);
                 edit(ui, setting.kind, value, refused);
             });
             if changed && reset.clicked() {
