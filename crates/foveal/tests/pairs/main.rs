@@ -13,7 +13,7 @@ mod settings;
 use foveal::{
     AmbientOcclusion, Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, CullingEyes,
     Error, EyeClipping, Frame, Geometry, Gpu, LightAssignment, LightingPass, MaterialDispatch,
-    RateSource, Renderer, RendererOptions, Settings, Shading, Shadows, Stereo,
+    RateCombine, RateSource, Renderer, RendererOptions, Settings, Shading, Shadows, Stereo,
 };
 use foveal_generate as generate;
 use foveal_scene::{Camera, LightKind, Material, Scene};
@@ -175,6 +175,7 @@ fn pair(chance: &mut Chance<'_>, both: &Settings, before: &mut Chance<'_>) -> Pa
             let every = |s: &mut Settings| {
                 s.shading.mode = Shading::Variable;
                 s.coarse.source = RateSource::Constant;
+                s.coarse.combine = RateCombine::First;
                 s.coarse.constant_level = 0;
                 s.stereo.mode = Stereo::Off;
             };
@@ -247,11 +248,13 @@ fn pair(chance: &mut Chance<'_>, both: &Settings, before: &mut Chance<'_>) -> Pa
             let [here, mut there] = sides(&side, &side);
             placement.settings(&mut there);
             // Lamps beyond some range draw tiles from the same distance on, so that depths are
-            // rounded elsewhere.
-            let is_rounded = turned || here.lighting.shadows != Shadows::Off;
+            // rounded elsewhere; and tiles of a turned world do not turn with it.
+            let has_shadows = here.lighting.shadows != Shadows::Off;
+            let is_rounded = turned || has_shadows;
+            let most_beyond = if turned && has_shadows { 0.06 } else { 0.02 };
             Pair {
                 tolerance: if is_rounded { 2 } else { 0 },
-                beyond: if is_rounded { 0.02 } else { 0.0 },
+                beyond: if is_rounded { most_beyond } else { 0.0 },
                 placement: Some(placement),
                 ..of("placed", [here, there])
             }
