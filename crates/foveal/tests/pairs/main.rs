@@ -228,9 +228,11 @@ fn pair(chance: &mut Chance<'_>, both: &Settings, before: &mut Chance<'_>) -> Pa
                 }
             };
             let [a, b] = [Geometry::Gbuffer, Geometry::Visibility];
+            // Msaa sorts what a pixel shows into surfaces by samples, or by triangles in a visibility buffer.
+            let is_smoothed = both.antialiasing.mode != Antialiasing::None;
             Pair {
                 tolerance: 1,
-                beyond: 0.002,
+                beyond: if is_smoothed { 0.02 } else { 0.002 },
                 ..of("geometry", sides(&side(a), &side(b)))
             }
         }
