@@ -1,5 +1,8 @@
 //! The renderer as a guest on the host's device.
 
+#[path = "common/host.rs"]
+mod host;
+
 use foveal::glam::{Mat4, Vec3, Vec4};
 use foveal::{
     Antialiasing, Error, Frame, Gpu, Renderer, RendererOptions, Settings, Shading, Stereo, Target,
@@ -12,20 +15,8 @@ fn clock() -> u64 {
     start.elapsed().as_nanos() as u64
 }
 
-fn host(required_limits: wgpu::Limits) -> (wgpu::Device, wgpu::Queue) {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    pollster::block_on(async {
-        let adapter = instance
-            .request_adapter(&Default::default())
-            .await
-            .expect("the tests need a graphics adapter");
-        let descriptor = wgpu::DeviceDescriptor {
-            required_features: Gpu::wanted_features() & adapter.features(),
-            required_limits,
-            ..Default::default()
-        };
-        adapter.request_device(&descriptor).await.expect("a device")
-    })
+fn host(limits: wgpu::Limits) -> (wgpu::Device, wgpu::Queue) {
+    host::device(Gpu::wanted_features(), limits)
 }
 
 fn texture(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::Texture {
