@@ -47,7 +47,7 @@ function showReduced(causes) {
   page.techniques = TECHNIQUES.filter((t) => t.reduced);
   const missing = TECHNIQUES.filter((t) => !t.reduced && !t.sum).map((t) => t.name.toLowerCase());
   const why = causes.length ? `This browser offers ${causes.join(', ')}` : 'As the link asks';
-  $('reduced').textContent = `${why}: a reduced renderer draws with WebGL 2. Every pixel is lit, for one eye or two, with or without culling. Missing: ${missing.join(', ')}, the views, and times per pass.`;
+  $('reduced').textContent = `${why}: a reduced renderer draws with WebGL 2. Every pixel is lit, for one eye or two, with or without culling. Missing: ${missing.join(', ')}, contact shadows, the views, and times per pass.`;
   $('reduced').hidden = false;
 }
 

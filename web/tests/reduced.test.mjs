@@ -43,40 +43,40 @@ test('the page draws with WebGL 2 and says what is missing', async () => {
   await page.context().close();
 });
 
-test('the picture is that of WebGPU', async (t) => {
+/** FLIP of WebGL 2 to WebGPU where a link asks for `settings`, and of WebGL 2 where it asks for `plain` ones. */
+async function flipToWebGpu(t, name, settings, plain) {
   const full = await open('webgpu');
   t.after(() => full.close());
   const folder = mkdtempSync(join(tmpdir(), 'foveal-web-'));
   const files = [];
-  for (const [name, where] of [['webgl2', site], ['webgpu', full]]) {
-    const { page } = await where.visit('#scene=demo:1000&technique=culling&left.anisotropy=1&scale=1&split=1', { width: 848, height: 270 });
-    files.push(join(folder, `${name}.png`));
+  for (const [kind, where, link] of [['webgl2', site, settings], ['webgpu', full, settings], ['plain', site, plain]]) {
+    const { page, said } = await where.visit(`#technique=culling&left.anisotropy=1&split=1&${link}`, { width: 848, height: 270 });
+    files.push(join(folder, `${kind}.png`));
     await savePicture(page, false, files.at(-1));
-    await page.context().close();
-  }
-  const error = flip(...files);
-  console.log(`FLIP of WebGL 2 to WebGPU: ${error}`);
-  assert.ok(error < 0.01, `FLIP to WebGPU is ${error}`);
-});
-
-test('shadows are those of WebGPU', async (t) => {
-  const full = await open('webgpu');
-  t.after(() => full.close());
-  const folder = mkdtempSync(join(tmpdir(), 'foveal-web-'));
-  const files = [];
-  for (const [name, where, shadows] of [['webgl2', site, 'soft'], ['webgpu', full, 'soft'], ['none', site, 'off']]) {
-    const { page, said } = await where.visit(`#scene=cornell&technique=culling&left.anisotropy=1&left.shadows=${shadows}&scale=0.5&split=1`, { width: 848, height: 270 });
-    files.push(join(folder, `${name}.png`));
-    await savePicture(page, false, files.at(-1));
-    await shot(page, `shadows-${name}`);
-    const offered = await page.evaluate(() => window.foveal.settings.table.find(({ key }) => key === 'shadows').names);
-    assert.equal(offered.includes('contact'), name === 'webgpu');
+    await shot(page, `${name}-${kind}`);
+    const { names } = await page.evaluate(() => window.foveal.settings.table.find(({ key }) => key === 'shadows'));
+    assert.equal(names.includes('contact'), kind === 'webgpu');
     assert.deepEqual(said, []);
     await page.context().close();
   }
-  const error = flip(files[0], files[1]);
-  console.log(`FLIP of WebGL 2 to WebGPU with shadows: ${error}, without: ${flip(files[2], files[1])}`);
-  assert.ok(error < 0.01 && flip(files[2], files[1]) > 0.05, `FLIP to WebGPU is ${error}`);
+  const [error, without] = [flip(files[0], files[1]), flip(files[2], files[1])];
+  console.log(`FLIP of WebGL 2 to WebGPU, ${name}: ${error}, plain: ${without}`);
+  assert.ok(error < 0.01, `FLIP to WebGPU is ${error}`);
+  return without;
+}
+
+test('the picture is that of WebGPU', async (t) => {
+  assert.ok(await flipToWebGpu(t, 'demo', 'scene=demo:1000&scale=1', 'scene=demo:1000&scale=1') < 0.01);
+});
+
+test('shadows are those of WebGPU', async (t) => {
+  const cornell = 'scene=cornell&scale=0.5&left.shadows=';
+  assert.ok(await flipToWebGpu(t, 'shadows', `${cornell}soft`, `${cornell}off`) > 0.05);
+});
+
+test('clear coat, sheen, glass and ambient occlusion are those of WebGPU', async (t) => {
+  const lobes = 'scene=lobes&scale=0.5&left.environment=sky&left.ambient-occlusion=';
+  assert.ok(await flipToWebGpu(t, 'lobes', `${lobes}screen`, `${lobes}off`) > 0.003);
 });
 
 test('the last picture stays while one of another size is drawn, and where that fails', async () => {

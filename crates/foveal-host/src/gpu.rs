@@ -75,7 +75,7 @@ fn is_gl(adapter: &AdapterStats) -> bool {
 
 fn reduced(adapter: &AdapterStats) -> String {
     format!(
-        "'{}' ({}) can be used through OpenGL alone, so a reduced renderer draws: without contact shadows, ambient occlusion, a visibility buffer, anti-aliasing, clear coat, sheen, anisotropy, iridescence, transmission, coarse \
+        "'{}' ({}) can be used through OpenGL alone, so a reduced renderer draws: without contact shadows, a visibility buffer, anti-aliasing, coarse \
          and variable shading, debug views and times per pass. For all of them install a Vulkan driver (on Debian: \
          apt-get install mesa-vulkan-drivers, or the graphics card's own), and see `foveal adapters`",
         adapter.name, adapter.driver

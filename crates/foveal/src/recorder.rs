@@ -39,6 +39,20 @@ impl Recorder<'_> {
         pass
     }
 
+    /// As [`Recorder::render_pass`], with `frame` as bind group 0: one that leaves out what the pass
+    /// draws to.
+    pub(crate) fn open_pass(
+        &mut self,
+        label: &str,
+        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        frame: &wgpu::BindGroup,
+    ) -> wgpu::RenderPass<'_> {
+        let timer = &mut self.timer;
+        let mut pass = timer.render_pass(self.encoder, label, colors, None, None);
+        pass.set_bind_group(0, frame, &[]);
+        pass
+    }
+
     /// Begins a compute pass that is timed under `label`; bind group 0 is set.
     pub(crate) fn compute_pass(&mut self, label: &str) -> wgpu::ComputePass<'_> {
         let mut pass = self.timer.compute_pass(self.encoder, label);

@@ -14,7 +14,12 @@ struct AmbientOcclusion {
     most_pixels: f32,
 }
 
+#ifdef REDUCED
+// Its bits.
+@group(1) @binding(0) var gbuffer_depth: texture_2d<u32>;
+#else
 @group(1) @binding(0) var gbuffer_depth: texture_depth_2d_array;
+#endif
 @group(1) @binding(1) var<uniform> occlusion: AmbientOcclusion;
 
 const PI: f32 = 3.14159265;

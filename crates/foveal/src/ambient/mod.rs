@@ -4,8 +4,9 @@
 //! One pass looks around at samples: at each pixel, or with coarse shading once per block of the rate
 //! map (`horizons.wgsl`). A second one joins nine of them for each pixel (`resolve.wgsl`). What it
 //! writes is bound with the environment: `shared/environment.wgsl`, `environment_seen`. The CPU twin
-//! is `twin.rs`.
+//! is `twin.rs`. The reduced renderer draws both passes (`drawn.rs`), which others dispatch.
 
+mod drawn;
 mod stage;
 mod targets;
 #[cfg(test)]
@@ -14,4 +15,4 @@ mod tests;
 mod twin;
 
 pub(crate) use stage::{AmbientStage, OcclusionUniform, Reach};
-pub(crate) use targets::{AmbientTargets, VISIBILITY_FORMAT};
+pub(crate) use targets::{AmbientTargets, visibility_format};

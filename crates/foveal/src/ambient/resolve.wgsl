@@ -4,16 +4,31 @@
 
 #variant
 #variant RATES
+#variant REDUCED
 #import ambient/horizons.wgsl
 #import shared/blocks.wgsl
 #import shared/frame.wgsl
+#ifdef REDUCED
+#import shared/full_screen.wgsl
+#endif
 #import shared/layers.wgsl
 #import shared/normal_of_depth.wgsl
 
+#ifdef REDUCED
+// Its bits.
+@group(1) @binding(2) var found: texture_2d<u32>;
+
+fn found_at(texel: vec2u) -> f32 {
+    return bitcast<f32>(textureLoad(found, texel, 0).x);
+}
+#else
 @group(1) @binding(2) var found: texture_2d<f32>;
-// Visibility, and the distance of the surface that has it, along the view axis; the distance of the
-// backdrop is negative.
 @group(1) @binding(3) var resolved: texture_storage_2d<rg32float, write>;
+
+fn found_at(texel: vec2u) -> f32 {
+    return textureLoad(found, texel, 0).x;
+}
+#endif
 #ifdef RATES
 // Of 2 x 2 pixels each.
 @group(1) @binding(4) var owner_levels: texture_2d<u32>;
@@ -39,16 +54,12 @@ fn sample_for(place: vec2u) -> vec2u {
     return select(sample_texel(place >> vec2u(level), level, 0u), place, level == 0u);
 }
 
-@compute @workgroup_size(8, 8)
-fn resolve(@builtin(global_invocation_id) id: vec3u) {
-    let texel = id.xy;
-    if any(texel >= vec2u(frame.target_size)) || is_padding(texel, 0u) {
-        return;
-    }
+// Visibility, and the distance of the surface that has it, along the view axis; the distance of the
+// backdrop is negative.
+fn resolved_at(texel: vec2u) -> vec2f {
     let depth = load_depth(gbuffer_depth, texel);
     if depth == 0.0 {
-        textureStore(resolved, texel, vec4f(1.0, -1.0, 0.0, 0.0));
-        return;
+        return vec2f(1.0, -1.0);
     }
     let level = level_at(texel);
     let side = f32(1u << level);
@@ -79,10 +90,26 @@ fn resolve(@builtin(global_invocation_id) id: vec3u) {
         let off = abs(there - expected) / allowed;
         let weight = wide.x * wide.y * (saturate(2.0 - off) + ELSEWHERE / (1.0 + off * off));
         let counts = select(0.0, weight, inside && load_depth(gbuffer_depth, at) > 0.0);
-        sum += counts * textureLoad(found, at, 0).x;
+        sum += counts * found_at(at);
         weights += counts;
     }
     // Where only the backdrop is around it, nothing occludes it.
     let visibility = select(1.0, sum / max(weights, 1e-20), weights > 0.0);
-    textureStore(resolved, texel, vec4f(visibility, view_distance(depth), 0.0, 0.0));
+    return vec2f(visibility, view_distance(depth));
 }
+
+#ifdef REDUCED
+// Their bits.
+@fragment
+fn resolve(@builtin(position) position: vec4f) -> @location(0) vec2u {
+    return bitcast<vec2u>(resolved_at(vec2u(position.xy)));
+}
+#else
+@compute @workgroup_size(8, 8)
+fn resolve(@builtin(global_invocation_id) id: vec3u) {
+    let texel = id.xy;
+    if all(texel < vec2u(frame.target_size)) && !is_padding(texel, 0u) {
+        textureStore(resolved, texel, vec4f(resolved_at(texel), 0.0, 0.0));
+    }
+}
+#endif

@@ -2,6 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::drawn::DrawnPasses;
 use super::targets::{AmbientTargets, FOUND_FORMAT, Listed, VISIBILITY_FORMAT};
 use crate::geometry::GBuffer;
 use crate::gpu::{
@@ -85,9 +86,18 @@ impl Pass {
 #[derive(Debug)]
 pub(crate) struct AmbientStage {
     uniform: wgpu::Buffer,
-    every: Pass,
-    resolve: Pass,
-    coarse: Option<CoarsePasses>,
+    means: Means,
+}
+
+#[derive(Debug)]
+enum Means {
+    Dispatched {
+        every: Pass,
+        resolve: Pass,
+        coarse: Option<CoarsePasses>,
+    },
+    /// Of the reduced renderer.
+    Drawn(DrawnPasses),
 }
 
 /// With coarse shading.
@@ -110,12 +120,6 @@ impl AmbientStage {
         if !settings.occludes_ambient() {
             return None;
         }
-        let depth = sampled_layers(wgpu::TextureSampleType::Depth);
-        let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
-        let resolved = written(VISIBILITY_FORMAT);
-        let every = ("ambient occlusion", shader::AMBIENT_EVERY, "find_every");
-        let resolve = ("ambient resolve", shader::AMBIENT_RESOLVE, "resolve");
-        let is_coarse = settings.shading.mode == Shading::Coarse;
         Some(Self {
             uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("ambient occlusion"),
@@ -123,14 +127,11 @@ impl AmbientStage {
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
-            every: Pass::new(
-                gpu,
-                frame,
-                every,
-                &[depth, uniform(), written(FOUND_FORMAT)],
-            ),
-            resolve: Pass::new(gpu, frame, resolve, &[depth, uniform(), float, resolved]),
-            coarse: is_coarse.then(|| CoarsePasses::new(gpu, frame)),
+            means: if gpu.is_reduced() {
+                Means::Drawn(DrawnPasses::new(gpu, frame))
+            } else {
+                Means::dispatched(gpu, settings, frame)
+            },
         })
     }
 
@@ -153,12 +154,22 @@ impl AmbientStage {
             return;
         }
         to.rests = rests;
-        let by_blocks = match (reach, &self.coarse, &to.listed) {
+        // What is written may not be bound.
+        let frame = recorder.frame.open_group(recorder.gpu);
+        let (every, resolve, coarse) = match &self.means {
+            Means::Dispatched {
+                every,
+                resolve,
+                coarse,
+            } => (every, resolve, coarse),
+            Means::Drawn(passes) => {
+                return passes.find(recorder, (&self.uniform, gbuffer), to, &frame);
+            }
+        };
+        let by_blocks = match (reach, coarse, &to.listed) {
             (Reach::Blocks(owner), Some(coarse), Some(listed)) => Some((owner, coarse, listed)),
             _ => None,
         };
-        // What is written may not be bound.
-        let frame = recorder.frame.open_group(recorder.gpu);
         let size = to.found.texture().size();
         let tiles = (size.width.div_ceil(TILE), size.height.div_ceil(TILE));
         let device = &recorder.gpu.device;
@@ -189,18 +200,39 @@ impl AmbientStage {
             pass.dispatch_workgroups(tiles.0, tiles.1, 1);
             return;
         }
-        let finding = group("ambient occlusion", &self.every.layout, &[view(&to.found)]);
+        let finding = group("ambient occlusion", &every.layout, &[view(&to.found)]);
         let rest = [view(&to.found), view(&to.resolved)];
-        let resolving = group("ambient resolve", &self.resolve.layout, &rest);
+        let resolving = group("ambient resolve", &resolve.layout, &rest);
         for (label, from, group) in [
-            ("ambient occlusion", &self.every, &finding),
-            ("ambient resolve", &self.resolve, &resolving),
+            ("ambient occlusion", every, &finding),
+            ("ambient resolve", resolve, &resolving),
         ] {
             let mut pass = recorder.compute_pass(label);
             pass.set_pipeline(&from.pipeline);
             pass.set_bind_group(0, &frame, &[]);
             pass.set_bind_group(1, group, &[]);
             pass.dispatch_workgroups(tiles.0, tiles.1, 1);
+        }
+    }
+}
+
+impl Means {
+    fn dispatched(gpu: &Gpu, settings: &Settings, frame: &wgpu::BindGroupLayout) -> Self {
+        let depth = sampled_layers(wgpu::TextureSampleType::Depth);
+        let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
+        let resolved = written(VISIBILITY_FORMAT);
+        let every = ("ambient occlusion", shader::AMBIENT_EVERY, "find_every");
+        let resolve = ("ambient resolve", shader::AMBIENT_RESOLVE, "resolve");
+        let is_coarse = settings.shading.mode == Shading::Coarse;
+        Self::Dispatched {
+            every: Pass::new(
+                gpu,
+                frame,
+                every,
+                &[depth, uniform(), written(FOUND_FORMAT)],
+            ),
+            resolve: Pass::new(gpu, frame, resolve, &[depth, uniform(), float, resolved]),
+            coarse: is_coarse.then(|| CoarsePasses::new(gpu, frame)),
         }
     }
 }

@@ -4,10 +4,28 @@ use crate::gpu::{self, Gpu};
 use crate::stereo::EyeLayout;
 use crate::{COARSEST_LEVEL, Settings, Shading};
 
-/// Visibility at the places that were looked from.
+/// Visibility at the places that were looked from, where shaders write it.
 pub(super) const FOUND_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
-/// Visibility of each pixel, and the distance of its surface.
-pub(crate) const VISIBILITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+/// Visibility of each pixel, and the distance of its surface, where shaders write them.
+pub(super) const VISIBILITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+
+/// [`FOUND_FORMAT`], or for the reduced renderer its bits: WebGL 2 draws to no floats of 32 bits.
+pub(super) fn found_format(gpu: &Gpu) -> wgpu::TextureFormat {
+    if gpu.is_reduced() {
+        wgpu::TextureFormat::R32Uint
+    } else {
+        FOUND_FORMAT
+    }
+}
+
+/// [`VISIBILITY_FORMAT`], or likewise its bits.
+pub(crate) fn visibility_format(gpu: &Gpu) -> wgpu::TextureFormat {
+    if gpu.is_reduced() {
+        wgpu::TextureFormat::Rg32Uint
+    } else {
+        VISIBILITY_FORMAT
+    }
+}
 
 /// The targets of one frame size.
 #[derive(Debug)]
@@ -35,12 +53,16 @@ impl AmbientTargets {
             return None;
         }
         let size = EyeLayout::of(settings).target_size();
-        let usage = wgpu::TextureUsages::STORAGE_BINDING;
+        let usage = if gpu.is_reduced() {
+            wgpu::TextureUsages::empty()
+        } else {
+            wgpu::TextureUsages::STORAGE_BINDING
+        };
         let target = |label, format| gpu::target(gpu, label, size, format, usage);
         let is_coarse = settings.shading.mode == Shading::Coarse;
         Some(Self {
-            found: target("ambient samples", FOUND_FORMAT),
-            resolved: target("ambient visibility", VISIBILITY_FORMAT),
+            found: target("ambient samples", found_format(gpu)),
+            resolved: target("ambient visibility", visibility_format(gpu)),
             // Where a list of all pixels does not fit, every pixel is looked at.
             listed: (is_coarse && Listed::fits(gpu, size)).then(|| Listed::new(gpu, size)),
             rests: false,

@@ -12,9 +12,11 @@
 #variant LOBES
 #variant LOBES CLIPPED
 #variant LOBES LAYERED
+#variant LOBES REDUCED
 #variant LOBES TRANSMISSION
 #variant LOBES TRANSMISSION CLIPPED
 #variant LOBES TRANSMISSION LAYERED
+#variant LOBES TRANSMISSION REDUCED
 #import shared/frame.wgsl
 #import shared/lighting.wgsl
 #import shared/material_at.wgsl

@@ -8,6 +8,9 @@
 #import shared/light_list.wgsl
 #import shared/lighting.wgsl
 #import shared/material.wgsl
+#ifdef REDUCED
+#import shared/material_bindings.wgsl
+#endif
 #import shared/surface.wgsl
 #import shadow/lookup.wgsl
 #import shadow/tile.wgsl
@@ -61,6 +64,7 @@ struct Lobes {
 }
 
 @group(1) @binding(15) var<uniform> lobes: Lobes;
+#ifndef REDUCED
 @group(1) @binding(16) var lobe_texture_1: texture_2d<f32>;
 @group(1) @binding(17) var lobe_sampler_1: sampler;
 @group(1) @binding(18) var lobe_texture_2: texture_2d<f32>;
@@ -71,6 +75,7 @@ struct Lobes {
 @group(1) @binding(23) var lobe_sampler_4: sampler;
 @group(1) @binding(24) var lobe_texture_5: texture_2d<f32>;
 @group(1) @binding(25) var lobe_sampler_5: sampler;
+#endif
 
 // A point of a lobed surface, ready to be lit.
 struct LobedSurface {
@@ -102,6 +107,24 @@ fn sample_lobe(place: u32, uv: vec4f) -> vec4f {
     let p = vec3f(select(uv.xy, uv.zw, map.x.w > 0.5), 1.0);
     let at = vec2f(dot(map.x.xyz, p), dot(map.y.xyz, p));
     let bound = bound_texture(place);
+#ifdef REDUCED
+    // Where the material itself reads none.
+    if bound == 1u {
+        return textureSample(specular_color_texture, specular_color_sampler, at);
+    } else if bound == 2u {
+        return textureSample(specular_texture, specular_sampler, at);
+    } else if bound == 3u {
+        return textureSample(emissive_texture, emissive_sampler, at);
+    } else if bound == 4u {
+        return textureSample(occlusion_texture, occlusion_sampler, at);
+    } else if bound == 5u {
+        return textureSample(normal_texture, normal_sampler, at);
+    } else if bound == 6u {
+        return textureSample(metallic_roughness_texture, metallic_roughness_sampler, at);
+    } else if bound == 7u {
+        return textureSample(base_color_texture, base_color_sampler, at);
+    }
+#else
     if bound == 1u {
         return textureSample(lobe_texture_1, lobe_sampler_1, at);
     } else if bound == 2u {
@@ -113,6 +136,7 @@ fn sample_lobe(place: u32, uv: vec4f) -> vec4f {
     } else if bound == 5u {
         return textureSample(lobe_texture_5, lobe_sampler_5, at);
     }
+#endif
     return vec4f(1.0);
 }
 

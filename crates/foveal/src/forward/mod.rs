@@ -168,10 +168,12 @@ impl ForwardPass {
         let behind = behind.draw(recorder, self.layout, targets, own);
         let (width, height) = self.layout.target_size();
         let whole = [Window::sized(width, height)];
+        let depth = own.depth_view.as_ref();
+        let depth = depth.unwrap_or(&targets.gbuffer.depth_view);
         if self.draws_depth_of(draws.list) {
             let target = ForwardTarget {
                 color: None,
-                depth: &own.depth_view,
+                depth,
                 content: Content::StrokesDepth,
             };
             self.draw_windows(recorder, draws, lights, target, &whole);
@@ -179,7 +181,7 @@ impl ForwardPass {
         let radiance = targets.radiance_layers.as_ref();
         let target = ForwardTarget {
             color: drawn_over(radiance.unwrap_or(&targets.radiance_view)),
-            depth: &own.depth_view,
+            depth,
             content: Content::Transmissive(&behind),
         };
         self.copy_radiance(recorder.encoder, targets, Copied::ToLayers);

@@ -59,9 +59,11 @@ impl Kind {
             (kind, _) if kind.draws_strokes() => &["STROKES"],
             (Self::Transmissive, _) if submission.clips() => &["LOBES", "TRANSMISSION", "CLIPPED"],
             (Self::Transmissive, Submission::Multiview) => &["LOBES", "TRANSMISSION", "LAYERED"],
+            (Self::Transmissive, _) if gpu.is_reduced() => &["LOBES", "TRANSMISSION", "REDUCED"],
             (Self::Transmissive, _) => &["LOBES", "TRANSMISSION"],
             _ if submission.clips() => &["LOBES", "CLIPPED"],
             (_, Submission::Multiview) => &["LOBES", "LAYERED"],
+            _ if gpu.is_reduced() => &["LOBES", "REDUCED"],
             _ => &["LOBES"],
         }
     }

@@ -20,8 +20,9 @@ pub(super) fn behind_stride(width: u32) -> u32 {
 pub(crate) struct TransmissionTargets {
     /// The picture without them; level l holds means over about 2^l pixels.
     pub(super) behind: MipChain,
-    /// The G-buffer's depth, and theirs.
-    pub(super) depth_view: wgpu::TextureView,
+    /// The G-buffer's depth, and theirs. The reduced renderer draws theirs to the G-buffer's own,
+    /// as WebGL 2 copies no depth: nothing reads it before geometry is drawn anew.
+    pub(super) depth_view: Option<wgpu::TextureView>,
 }
 
 impl TransmissionTargets {
@@ -37,13 +38,17 @@ impl TransmissionTargets {
         let copied = wgpu::TextureUsages::COPY_DST;
         Self {
             behind: MipChain::new(gpu, label, whole, 0..=COARSEST, format, read),
-            depth_view: layered_target(gpu, "forward depth", size, layers, DEPTH_FORMAT, copied),
+            depth_view: (!gpu.is_reduced())
+                .then(|| layered_target(gpu, "forward depth", size, layers, DEPTH_FORMAT, copied)),
         }
     }
 
     pub(crate) fn bytes(&self) -> u64 {
-        let size = self.depth_view.texture().size();
-        let texels = u64::from(size.width) * u64::from(size.height);
-        self.behind.bytes() + texels * u64::from(size.depth_or_array_layers) * 4
+        let depth = self.depth_view.as_ref().map_or(0, |view| {
+            let size = view.texture().size();
+            let texels = u64::from(size.width) * u64::from(size.height);
+            texels * u64::from(size.depth_or_array_layers) * 4
+        });
+        self.behind.bytes() + depth
     }
 }

@@ -64,8 +64,10 @@ impl BehindPass {
             };
             encoder.copy_texture_to_texture(from, behind, picture);
         }
-        let forward = to.depth_view.texture().as_image_copy();
-        encoder.copy_texture_to_texture(depth.as_image_copy(), forward, depth.size());
+        if let Some(forward) = &to.depth_view {
+            let forward = forward.texture().as_image_copy();
+            encoder.copy_texture_to_texture(depth.as_image_copy(), forward, depth.size());
+        }
         let device = &recorder.gpu.device;
         let group = |layout, view| {
             let view = [wgpu::BindingResource::TextureView(view)];

@@ -15,7 +15,9 @@ use crate::gpu::read_buffer;
 use crate::lights::cluster_bits;
 use crate::shader::{self, Shader};
 use crate::testing::{gpu, picture, rendered, rendered_on, small};
-use crate::{Culling, EnvironmentSource, Gpu, Output, Renderer, Settings, Shadows, Stereo};
+use crate::{
+    AmbientOcclusion, Culling, EnvironmentSource, Gpu, Output, Renderer, Settings, Shadows, Stereo,
+};
 
 /// A device that was asked for no more than WebGL 2 has.
 fn reduced_gpu() -> &'static Gpu {
@@ -59,7 +61,7 @@ fn the_reduced_renderer_gives_the_full_ones_picture() {
         s.stereo.output = Output::AnaglyphDubois;
         s.culling.mode = Culling::Occlusion;
     });
-    for name in ["cornell", "alpha", "materials-grid", "demo:1000"] {
+    for name in ["cornell", "alpha", "materials-grid", "lobes", "demo:1000"] {
         let scene = generate::by_name(name).expect("it is generated");
         let sky = small(161, 99).with(|s| s.lighting.environment = EnvironmentSource::Sky);
         let bounces = sky.clone().with(|s| s.lighting.multiple_scattering = true);
@@ -72,6 +74,32 @@ fn the_reduced_renderer_gives_the_full_ones_picture() {
             let share = differing(&full, &ours, 2);
             assert!(share < 1e-3, "{name}: {share} of the channels");
             assert!(differing(&full, &vec![0; full.len()], 20) > 0.2, "{name}");
+        }
+    }
+}
+
+#[test]
+fn ambient_occlusion_is_that_of_the_full_renderer() {
+    let open = small(161, 99).with(|s| s.lighting.environment = EnvironmentSource::Sky);
+    let occluded = open
+        .clone()
+        .with(|s| s.lighting.ambient_occlusion = AmbientOcclusion::Screen);
+    let of_two = occluded.clone().with(|s| s.stereo.mode = Stereo::Auto);
+    for name in ["cornell", "alpha", "lobes", "demo:1000"] {
+        let scene = generate::by_name(name).expect("it is generated");
+        let camera = &scene.cameras[0];
+        let unoccluded = picture(&rendered(&scene, camera, &open));
+        for settings in [&occluded, &of_two] {
+            let full = picture(&rendered(&scene, camera, settings));
+            let ours = pollster::block_on(reduced(&scene, camera, settings).read_picture());
+            let ours = ours.expect("read-back works");
+            let share = differing(&full, &ours, 2);
+            assert!(share < 1e-3, "{name}: {share} of the channels");
+            if settings.is_stereo() {
+                continue;
+            }
+            let dimmed = differing(&unoccluded, &ours, 4);
+            assert!(dimmed > 5e-3, "{name}: {dimmed}");
         }
     }
 }
@@ -213,7 +241,7 @@ const SINCE_ES_3_10: [&str; 19] = [
 /// WebGL 2 takes GLSL ES 3.00 alone.
 #[test]
 fn the_reduced_shaders_can_be_said_in_the_language_of_webgl_2() {
-    let all: [(Shader, [&str; 2]); 8] = [
+    let all: [(Shader, [&str; 2]); 13] = [
         (
             shader::REDUCED_GBUFFER.variant(&["REDUCED"]),
             ["vertex", "fragment"],
@@ -230,6 +258,23 @@ fn the_reduced_shaders_can_be_said_in_the_language_of_webgl_2() {
             shader::FORWARD_FORWARD.variant(&["STROKES", "REDUCED"]),
             ["vertex", "fragment"],
         ),
+        (
+            shader::FORWARD_FORWARD.variant(&["LOBES", "REDUCED"]),
+            ["vertex", "fragment"],
+        ),
+        (
+            shader::FORWARD_FORWARD.variant(&["LOBES", "TRANSMISSION", "REDUCED"]),
+            ["vertex", "fragment"],
+        ),
+        (shader::FORWARD_HALVE, ["level_screen", "halve"]),
+        (
+            shader::AMBIENT_EVERY.variant(&["REDUCED"]),
+            ["full_screen", "find_every"],
+        ),
+        (
+            shader::AMBIENT_RESOLVE.variant(&["REDUCED"]),
+            ["full_screen", "resolve"],
+        ),
         (shader::SHADOW_CASTER, ["vertex_of_caster", "cast_shadow"]),
         (shader::SHADOW_CLEAR, ["full_screen", "clear"]),
         (shader::OUTPUT_TONE_MAP, ["full_screen", "tone_map"]),
@@ -237,6 +282,13 @@ fn the_reduced_shaders_can_be_said_in_the_language_of_webgl_2() {
     ];
     for (shader, entry_points) in all {
         let module = naga::front::wgsl::parse_str(&shader.source(true)).expect("it parses");
+        // All that both stages bind: wgpu gives each its own unit of the 16 that WebGL 2 has.
+        let images = module.global_variables.iter().filter(|(_, variable)| {
+            let inner = &module.types[variable.ty].inner;
+            matches!(inner, naga::TypeInner::Image { .. })
+        });
+        let images = images.count();
+        assert!(images <= 16, "{entry_points:?}: {images} textures");
         let mut validator = naga::valid::Validator::new(
             naga::valid::ValidationFlags::all(),
             naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32,

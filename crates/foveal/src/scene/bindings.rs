@@ -3,7 +3,7 @@
 
 use super::InstanceUniform;
 use crate::Error;
-use crate::ambient::VISIBILITY_FORMAT;
+use crate::ambient::visibility_format;
 use crate::environment::{EnvironmentBinding, ToBind};
 use crate::frame::FrameUniform;
 use crate::gpu::{Gpu, Table, bind_group, bind_group_layout, sampled, target, uniform};
@@ -25,8 +25,8 @@ pub(crate) struct FrameBindings {
 /// What occludes the environment.
 #[derive(Debug)]
 struct AmbientBinding {
-    /// Stands for it where nothing does; the reduced renderer has no place for it.
-    none: Option<wgpu::TextureView>,
+    /// Stands for it where nothing does.
+    none: wgpu::TextureView,
     found: Option<wgpu::TextureView>,
 }
 
@@ -35,15 +35,14 @@ impl AmbientBinding {
         let usage = wgpu::TextureUsages::empty();
         let label = "no ambient occlusion";
         Self {
-            none: (!gpu.is_reduced()).then(|| target(gpu, label, (1, 1), VISIBILITY_FORMAT, usage)),
+            none: target(gpu, label, (1, 1), visibility_format(gpu), usage),
             found: None,
         }
     }
 
     fn resource(&self) -> Option<wgpu::BindingResource<'_>> {
-        let found = self.none.as_ref().and(self.found.as_ref());
-        let view = found.or(self.none.as_ref());
-        view.map(wgpu::BindingResource::TextureView)
+        let view = self.found.as_ref().unwrap_or(&self.none);
+        Some(wgpu::BindingResource::TextureView(view))
     }
 }
 
@@ -62,10 +61,11 @@ impl FrameBindings {
         let mut types = vec![uniform(), table, table, cube, reflectances, sampler];
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
         let open_layout = bind_group_layout(gpu, "open frame", stages, &types);
-        if !gpu.is_reduced() {
-            let float = wgpu::TextureSampleType::Float { filterable: false };
-            types.push(sampled(float));
-        }
+        types.push(sampled(if gpu.is_reduced() {
+            wgpu::TextureSampleType::Uint
+        } else {
+            wgpu::TextureSampleType::Float { filterable: false }
+        }));
         let layout = bind_group_layout(gpu, "frame", stages, &types);
         let frame = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frame"),

@@ -4,13 +4,43 @@ use bytemuck::{Pod, Zeroable};
 use foveal_scene::{Material, Texture, TextureRef};
 use glam::{Vec2, Vec3};
 
-use super::material_uniform::{is_of_two, uv_rows};
+use super::material_uniform::{SLOTS, is_of_two, slots, uv_rows};
 
 /// Places for textures in all lobes.
 const PLACES: usize = 10;
 
-/// Textures that are bound at once.
+/// Bindings for textures of lobes alone.
 pub(super) const BOUND: usize = Material::MAX_LOBE_TEXTURES;
+
+/// Where a texture of lobes is bound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Binding {
+    /// At one for lobes alone.
+    Own(usize),
+    /// At a slot of the material's own textures.
+    Slot(usize),
+}
+
+impl Binding {
+    /// The bindings for a material's lobes. A pipeline of the reduced renderer binds 16 textures at
+    /// most, and none of them for lobes alone: theirs go where the material has none of its own.
+    fn all(material: &Material, reduced: bool) -> Vec<Self> {
+        if !reduced {
+            return (0..BOUND).map(Self::Own).collect();
+        }
+        let slots = slots(material).into_iter().enumerate().rev();
+        let free = slots.filter(|(_, slot)| slot.is_none());
+        free.map(|(number, _)| Self::Slot(number)).collect()
+    }
+
+    /// What `LOBE_TEXTURES` calls it.
+    fn name(self) -> u32 {
+        match self {
+            Self::Own(number) => number as u32 + 1,
+            Self::Slot(number) => (SLOTS - number) as u32,
+        }
+    }
+}
 
 /// Mirrors `Lobes` in `forward/lobes.wgsl`, where the fields are explained.
 #[repr(C)]
@@ -99,8 +129,13 @@ impl LobeClass {
         self.flags & HAS_TRANSMISSION != 0
     }
 
-    /// A material's, with the textures to bind; `textures`: the scene's, with or without texels.
-    pub(super) fn of(material: &Material, textures: &[Texture]) -> (Self, Vec<u32>) {
+    /// A material's, with the textures to bind and where; `textures`: the scene's, with or without
+    /// texels.
+    pub(super) fn of(
+        material: &Material,
+        textures: &[Texture],
+        reduced: bool,
+    ) -> (Self, Vec<(Binding, u32)>) {
         let coat_normal = (material.clearcoat.as_ref()).and_then(|coat| coat.normal_texture);
         let flags = [
             (material.clearcoat.is_some(), HAS_CLEARCOAT),
@@ -110,19 +145,18 @@ impl LobeClass {
             (material.transmission.is_some(), HAS_TRANSMISSION),
             (material.iridescence.is_some(), 262_144),
         ];
-        let mut bound: Vec<u32> = Vec::new();
+        let mut left = Binding::all(material, reduced).into_iter();
+        let mut bound: Vec<(Binding, u32)> = Vec::new();
         let mut place = |slot: Option<TextureRef>| {
             let Some(slot) = slot else { return 0 };
-            let known = bound.iter().position(|&texture| texture == slot.texture);
-            let at = known.unwrap_or(bound.len());
+            let known = bound.iter().find(|(_, texture)| *texture == slot.texture);
+            if let Some((binding, _)) = known {
+                return binding.name();
+            }
             // One that is too many is left out.
-            if at == BOUND {
-                return 0;
-            }
-            if known.is_none() {
-                bound.push(slot.texture);
-            }
-            at as u32 + 1
+            let Some(binding) = left.next() else { return 0 };
+            bound.push((binding, slot.texture));
+            binding.name()
         };
         let places = material.lobe_textures().map(&mut place);
         let textures = (0..).zip(places).map(|(i, at)| at << (3 * i)).sum();
@@ -167,8 +201,44 @@ mod tests {
             }),
             ..Material::default()
         };
-        let (class, bound) = LobeClass::of(&material, &[]);
+        let (class, bound) = LobeClass::of(&material, &[], false);
         assert_eq!((class.flags, class.textures), (4096 | 8192, 0o1211));
-        assert_eq!(bound, [7, 2]);
+        assert_eq!(bound, [(Binding::Own(0), 7), (Binding::Own(1), 2)]);
+    }
+
+    #[test]
+    fn the_reduced_renderer_binds_them_where_the_material_has_none() {
+        let slot = |texture| {
+            Some(TextureRef {
+                texture,
+                uv_set: 0,
+                uv_transform: Mat3::IDENTITY,
+            })
+        };
+        let mut material = Material {
+            base_color_texture: slot(0),
+            specular_color_texture: slot(1),
+            emissive_texture: slot(2),
+            clearcoat: Some(Clearcoat {
+                factor: 1.0,
+                texture: slot(7),
+                roughness: 0.0,
+                roughness_texture: slot(8),
+                normal_texture: slot(9),
+                normal_scale: 1.0,
+            }),
+            ..Material::default()
+        };
+        let (class, bound) = LobeClass::of(&material, &[], true);
+        // Specular, occlusion, normals.
+        assert_eq!(class.textures, 0o542);
+        let expected = [(5, 7), (3, 8), (2, 9)];
+        assert_eq!(bound, expected.map(|(at, of)| (Binding::Slot(at), of)));
+        material.specular_texture = slot(3);
+        material.occlusion_texture = slot(3);
+        material.normal_texture = slot(3);
+        let (class, bound) = LobeClass::of(&material, &[], true);
+        assert_eq!(class.textures, 0o006);
+        assert_eq!(bound, [(Binding::Slot(1), 7)]);
     }
 }

@@ -6,7 +6,7 @@ use super::material_uniform::{MaterialUniform, SLOTS, material_class, slots};
 use foveal_scene::{ColorSpace, Material, Sampler, Scene, Texture};
 
 use super::families::{Families, FamilyBindings, Slot};
-use super::lobes::{BOUND, LobeClass, LobesUniform};
+use super::lobes::{BOUND, Binding, LobeClass, LobesUniform};
 use super::samplers::Samplers;
 use super::textures::{ArrayLimits, Textures};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, uniform};
@@ -28,9 +28,26 @@ pub(crate) fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 
 /// The layout of bind group 1 where lobes are shaded: the same, and theirs.
 pub(crate) fn lobes_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let all: Vec<_> = types(SLOTS).into_iter().chain(types(BOUND)).collect();
+    let own = types(own_bindings(gpu));
+    let all: Vec<_> = types(SLOTS).into_iter().chain(own).collect();
     let stages = wgpu::ShaderStages::FRAGMENT;
     bind_group_layout(gpu, "lobes", stages, &all)
+}
+
+/// Bindings for textures of lobes alone.
+fn own_bindings(gpu: &Gpu) -> usize {
+    if gpu.is_reduced() { 0 } else { BOUND }
+}
+
+/// Textures and samplers, each texture before its own.
+fn push_pairs<'a>(
+    resources: &mut Vec<wgpu::BindingResource<'a>>,
+    pairs: &'a [(&wgpu::TextureView, wgpu::Sampler)],
+) {
+    resources.extend(pairs.iter().flat_map(|(view, sampler)| {
+        let view = wgpu::BindingResource::TextureView(view);
+        [view, wgpu::BindingResource::Sampler(sampler)]
+    }));
 }
 
 /// A material's lobes.
@@ -141,47 +158,55 @@ impl SceneMaterials {
         for ((number, material), uniform) in (0..).zip(&scene.materials).zip(&uniforms) {
             let offset = number * stride;
             (gpu.queue).write_buffer(&buffer, offset, bytemuck::bytes_of(uniform));
-            let mut pair = |texture: u32| {
-                let sampler = (scene.textures.get(texture as usize))
-                    .map_or_else(Sampler::default, |texture| texture.sampler);
-                (textures.alone(texture), samplers.get(sampler))
+            let mut pairs = |textures_at: &[u32]| -> Vec<_> {
+                let sampler_of = |texture| {
+                    (scene.textures.get(texture as usize))
+                        .map_or_else(Sampler::default, |texture| texture.sampler)
+                };
+                (textures_at.iter())
+                    .map(|&at| (textures.alone(at), samplers.get(sampler_of(at))))
+                    .collect()
             };
-            let pairs = slots(material).map(|slot| pair(slot.map_or(missing, |slot| slot.texture)));
-            let mut resources = vec![wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            let block_of_material = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
                 buffer: &buffer,
                 offset,
                 size: wgpu::BufferSize::new(size_of::<MaterialUniform>() as u64),
-            })];
-            for (view, sampler) in &pairs {
-                resources.push(wgpu::BindingResource::TextureView(view));
-                resources.push(wgpu::BindingResource::Sampler(sampler));
-            }
+            });
+            let mut at_slots = slots(material).map(|slot| slot.map_or(missing, |s| s.texture));
+            let own = pairs(&at_slots);
+            let mut resources = vec![block_of_material.clone()];
+            push_pairs(&mut resources, &own);
             groups.push(bind_group(&gpu.device, &material.name, layout, &resources));
-            if !material.has_lobes() || material.unlit || gpu.is_reduced() {
+            if !material.has_lobes() || material.unlit {
                 lobes.push(None);
                 continue;
             }
-            let (class, bound) = LobeClass::of(material, &scene.textures);
-            let own = LobesUniform::new(material);
+            let (class, bound) = LobeClass::of(material, &scene.textures, gpu.is_reduced());
+            let mut at_own = [missing; BOUND];
+            for (binding, texture) in bound {
+                match binding {
+                    Binding::Own(place) => at_own[place] = texture,
+                    Binding::Slot(place) => at_slots[place] = texture,
+                }
+            }
+            let uniform = LobesUniform::new(material);
             let block = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("lobes"),
                 size: size_of::<LobesUniform>() as u64,
                 usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
-            (gpu.queue).write_buffer(&block, 0, bytemuck::bytes_of(&own));
-            let bound = bound.into_iter().chain(std::iter::repeat(missing));
-            let bound: Vec<_> = bound.take(BOUND).map(pair).collect();
+            (gpu.queue).write_buffer(&block, 0, bytemuck::bytes_of(&uniform));
+            let (with_lobes, of_lobes) = (pairs(&at_slots), pairs(&at_own[..own_bindings(gpu)]));
+            let mut resources = vec![block_of_material];
+            push_pairs(&mut resources, &with_lobes);
             resources.push(block.as_entire_binding());
-            for (view, sampler) in &bound {
-                resources.push(wgpu::BindingResource::TextureView(view));
-                resources.push(wgpu::BindingResource::Sampler(sampler));
-            }
+            push_pairs(&mut resources, &of_lobes);
             let group = bind_group(&gpu.device, &material.name, &lobes_layout, &resources);
             lobes.push(Some(Lobes {
                 class,
                 group,
-                uniform: own,
+                uniform,
                 block,
             }));
         }

@@ -31,11 +31,22 @@ const PI: f32 = 3.14159265;
 // in the last.
 @group(0) @binding(4) var environment_reflectances: texture_2d<f32>;
 @group(0) @binding(5) var environment_sampler: sampler;
-#ifndef REDUCED
 #ifndef TRANSMISSION
 // Part of the environment's light that reaches each pixel, and the distance of the surface there.
 // Surfaces that light passes read as many textures as there may be, without it.
+#ifdef REDUCED
+// Their bits: WebGL 2 draws to no floats of 32 bits.
+@group(0) @binding(6) var ambient_visibility: texture_2d<u32>;
+
+fn visibility_found(at: vec2i) -> vec2f {
+    return bitcast<vec2f>(textureLoad(ambient_visibility, at, 0).xy);
+}
+#else
 @group(0) @binding(6) var ambient_visibility: texture_2d<f32>;
+
+fn visibility_found(at: vec2i) -> vec2f {
+    return textureLoad(ambient_visibility, at, 0).xy;
+}
 #endif
 #endif
 
@@ -260,9 +271,6 @@ fn environment_diffuse(s: Surface, v: vec3f) -> vec3f {
 // distance along the view axis. Sub-samples and what is drawn forward may lie on another surface
 // than the pixel's: they take the pixel around that is nearest to theirs.
 fn environment_seen(pixel: vec2f, distance: f32) -> f32 {
-#ifdef REDUCED
-    return 1.0;
-#else
 #ifdef TRANSMISSION
     return 1.0;
 #else
@@ -273,18 +281,17 @@ fn environment_seen(pixel: vec2f, distance: f32) -> f32 {
     let first = vec2i(picture.low);
     let last = vec2i(picture.end) - 1;
     let at = clamp(vec2i(pixel), first, last);
-    var found = textureLoad(ambient_visibility, at, 0).xy;
+    var found = visibility_found(at);
     let half_height = abs(frame.views[view_at(pixel)].view_from_ndc.y);
     let scale = select(distance, half_height, frame.orthographic != 0u);
     if abs(found.y - distance) > SAME_SURFACE * scale {
         for (var i = 0; i < 9; i++) {
             let beside = clamp(at + vec2i(i % 3, i / 3) - 1, first, last);
-            let other = textureLoad(ambient_visibility, beside, 0).xy;
+            let other = visibility_found(beside);
             found = select(found, other, abs(other.y - distance) < abs(found.y - distance));
         }
     }
     return select(1.0, found.x, abs(found.y - distance) <= OTHER_SURFACE * scale);
-#endif
 #endif
 }
 

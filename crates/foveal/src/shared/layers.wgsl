@@ -13,10 +13,17 @@ fn load_words(layers: texture_2d_array<u32>, texel: vec2u) -> vec4u {
     return textureLoad(layers, at.xy, at.z, 0);
 }
 
+#ifdef REDUCED
+// The reduced renderer has no layers, and depth's bits.
+fn load_depth(depths: texture_2d<u32>, texel: vec2u) -> f32 {
+    return bitcast<f32>(textureLoad(depths, texel, 0).x);
+}
+#else
 fn load_depth(layers: texture_depth_2d_array, texel: vec2u) -> f32 {
     let at = in_layers(textureDimensions(layers).x, texel);
     return textureLoad(layers, at.xy, at.z, 0);
 }
+#endif
 
 // Columns and rows of all layers side by side.
 fn whole_size(layers: texture_2d_array<u32>) -> vec2u {

@@ -3,8 +3,7 @@
 
 use crate::Error;
 use crate::settings::{
-    AmbientOcclusion, Antialiasing, DebugView, Geometry, LightingPass, Setting, Settings, Shading,
-    Shadows,
+    Antialiasing, DebugView, Geometry, LightingPass, Setting, Settings, Shading, Shadows,
 };
 
 /// Stages that are missing on such devices, with what only they ask for.
@@ -18,7 +17,7 @@ const MISSING_STAGES: [&str; 6] = [
 ];
 
 /// Single settings that are missing there.
-const MISSING_KEYS: [&str; 11] = [
+const MISSING_KEYS: [&str; 9] = [
     "view",
     "geometry",
     "material-dispatch",
@@ -26,8 +25,6 @@ const MISSING_KEYS: [&str; 11] = [
     "shadow-sizes",
     "light-radius",
     "sun-angle",
-    "ambient-occlusion",
-    "ambient-occlusion-radius",
     "eye-clipping",
     "gaze-shift",
 ];
@@ -61,11 +58,6 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
             "shadows",
             s.lighting.shadows != Shadows::Contact,
             "off, hard or soft",
-        ),
-        (
-            "ambient-occlusion",
-            s.lighting.ambient_occlusion == AmbientOcclusion::Off,
-            "off",
         ),
         (
             "lighting-pass",
