@@ -12,6 +12,8 @@ struct AmbientOcclusion {
     radius: f32,
     // Of the radius on the screen, in pixels: beyond, it is shortened.
     most_pixels: f32,
+    // WebGL 2 binds multiples of 16 bytes.
+    padding: vec2f,
 }
 
 #ifdef REDUCED

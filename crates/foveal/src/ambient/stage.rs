@@ -34,6 +34,7 @@ impl Settings {
 pub(crate) struct OcclusionUniform {
     pub(crate) radius: f32,
     pub(crate) most_pixels: f32,
+    pub(crate) padding: [f32; 2],
 }
 
 impl OcclusionUniform {
@@ -46,6 +47,7 @@ impl OcclusionUniform {
             // A scene without extent, or without end, has none that makes sense.
             radius: if radius.is_finite() { radius } else { 0.0 }.max(1e-6),
             most_pixels: PART_OF_PICTURE * settings.picture.height as f32,
+            padding: [0.0; 2],
         }
     }
 }

@@ -282,6 +282,15 @@ fn the_reduced_shaders_can_be_said_in_the_language_of_webgl_2() {
     ];
     for (shader, entry_points) in all {
         let module = naga::front::wgsl::parse_str(&shader.source(true)).expect("it parses");
+        for (_, variable) in module.global_variables.iter() {
+            let size = module.types[variable.ty].inner.size(module.to_ctx());
+            let fits = variable.space != naga::AddressSpace::Uniform || size.is_multiple_of(16);
+            assert!(
+                fits,
+                "{entry_points:?}: {:?} has {size} bytes",
+                variable.name
+            );
+        }
         // All that both stages bind: wgpu gives each its own unit of the 16 that WebGL 2 has.
         let images = module.global_variables.iter().filter(|(_, variable)| {
             let inner = &module.types[variable.ty].inner;

@@ -42,7 +42,7 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
         AMBIENT_EVERY,
         "AmbientOcclusion",
         OcclusionUniform,
-        [radius, most_pixels]
+        [radius, most_pixels, padding]
     );
     assert_same_layout!(
         GEOMETRY_GBUFFER,
