@@ -1,9 +1,9 @@
 //! What may differ between two sides that show the same.
 
 use foveal::{
-    AmbientOcclusion, Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, CullingEyes,
-    EyeClipping, Geometry, LightAssignment, LightingPass, MaterialDispatch, RateCombine,
-    RateSource, Settings, Shading, Shadows, Stereo,
+    Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, CullingEyes, EyeClipping,
+    Geometry, LightAssignment, LightingPass, MaterialDispatch, RateCombine, RateSource, Settings,
+    Shading, Shadows, Stereo,
 };
 
 use crate::placement::Placement;
@@ -202,7 +202,6 @@ pub(crate) fn pair(chance: &mut Chance<'_>, both: &Settings, before: &mut Chance
                 s.antialiasing.mode = Antialiasing::None;
                 s.shading.mode = Shading::Full;
                 s.lighting.pass = LightingPass::Fragment;
-                s.lighting.ambient_occlusion = AmbientOcclusion::Off;
                 if s.lighting.shadows == Shadows::Contact {
                     s.lighting.shadows = Shadows::Soft;
                 }

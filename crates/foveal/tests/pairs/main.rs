@@ -12,10 +12,11 @@ mod kinds;
 mod motion;
 mod placement;
 mod settings;
+mod textured;
 
 use foveal::{Error, Frame, Gpu, Renderer, RendererOptions, Settings};
 use foveal_generate as generate;
-use foveal_scene::{Camera, LightKind, Material, Scene};
+use foveal_scene::{Camera, LightKind, Scene};
 use glam::Vec3;
 use pollster::block_on;
 use proptest::prelude::Rng;
@@ -41,7 +42,8 @@ static REDUCED: LazyLock<Gpu> = LazyLock::new(|| {
 static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
     let names = ["cornell", "alpha", "lobes", "materials-grid", "demo:1000"];
     let named = |name| generate::by_name(name).expect("a scene of that name");
-    names.map(named).into_iter().map(lit).collect()
+    let named = names.map(named).into_iter();
+    named.chain([textured::textured()]).map(lit).collect()
 });
 
 fn lit(mut scene: Scene) -> Scene {
@@ -111,7 +113,7 @@ fn pictures(
 fn compare(numbers: &[u8]) -> Result<bool, String> {
     // Each has numbers of its own, so that fewer choices of one leave the others alone.
     let of = |range: std::ops::Range<usize>| Chance(numbers[range].iter());
-    let scene = &SCENES[of(0..1).of(&[0, 1, 2, 3, 4])];
+    let scene = &SCENES[of(0..1).of(&[0, 1, 2, 3, 4, 5])];
     let both = 32..32 + settings::NUMBERS;
     let before = both.end..NUMBERS;
     let both = settings::settings(&mut of(both));
@@ -119,9 +121,6 @@ fn compare(numbers: &[u8]) -> Result<bool, String> {
     let frames = if pair.at_rest { 4 + ROUND } else { 4 };
     let cameras = motion::cameras(&mut of(8..20), scene, frames);
     let poses = motion::poses(&mut of(20..32), scene);
-    if pair.is_reduced && scene.materials.iter().any(Material::has_lobes) {
-        return Ok(false);
-    }
     let draw = |gpu, poses: &[_], cameras: &[_], side, before, first| {
         pictures(gpu, poses, cameras, side, before, pair.at_rest, first)
     };
