@@ -1,6 +1,7 @@
 // Which scene is shown: a generated one, or a file from the user.
 
 import { tellSettings } from './chooser.js';
+import { dropped, together } from './dropped.js';
 import { writeLink } from './link.js';
 import { $, alone, forgetCosts, page, printable, redraw, say, wait } from './page.js';
 import { hasStopped, isLost, orLost, rehearse } from './renderer.js';
@@ -66,51 +67,46 @@ function showAlone(scene) {
   return alone(() => showScene(scene).catch((cause) => page.restart(cause)));
 }
 
-/** Files that come together: the scene first, then those that may lie beside it. */
-function sceneFirst(given) {
-  const scene = given.find(({ name }) => /\.(glb|gltf)$/i.test(name)) ?? given[0];
-  return [scene, ...given.filter((file) => file !== scene)];
+/** Says why no file is shown. */
+function refuse(sentence) {
+  say(sentence);
+  $('scene').value = page.scene.name;
 }
 
 /** Shows the first of the files; the others are those that it may name. */
-async function showFiles(together) {
-  const refuse = (sentence) => {
-    say(sentence);
-    $('scene').value = page.scene.name;
-  };
-  const [{ name }] = together;
-  const size = together.reduce((sum, file) => sum + file.size, 0);
+async function showFiles(given) {
+  const [{ name }] = given;
+  const size = given.reduce((sum, { file }) => sum + file.size, 0);
   if (size > MOST_BYTES) {
     const megabytes = (bytes) => `${(bytes / 1e6).toFixed(1)} MB`;
-    const all = together.length > 1 ? ' with the files beside it' : '';
+    const all = given.length > 1 ? ' with the files beside it' : '';
     refuse(`${name} is too large: it has ${megabytes(size)}${all}, the limit is ${megabytes(MOST_BYTES)}; what is shown stays`);
     return;
   }
   const read = [];
-  for (const file of together) {
+  for (const { name: one, file } of given) {
     try {
-      read.push([file.name, await file.arrayBuffer()]);
+      read.push([one, await file.arrayBuffer()]);
     } catch (cause) {
-      refuse(`${file.name} cannot be read: ${cause.message}`);
+      refuse(`${one} cannot be read: ${cause.message}`);
       return;
     }
   }
   const [[, bytes], ...others] = read;
-  if (await showAlone({ name, bytes, beside: new Map(others) })) files.set(name, together);
+  if (await showAlone({ name, bytes, beside: new Map(others) })) files.set(name, given);
 }
 
 /** Shows what the list names: a file, or else a generated scene. */
 function showNamed(name) {
-  const together = files.get(name);
-  return together ? showFiles(together) : showAlone({ name, bytes: null });
+  const known = files.get(name);
+  return known ? showFiles(known) : showAlone({ name, bytes: null });
 }
 
 export function wireScenes() {
   for (const scene of SCENES) $('scene').add(new Option(scene, scene));
   $('scene').addEventListener('change', (event) => showNamed(event.target.value));
   $('file').addEventListener('change', (event) => {
-    const chosen = [...event.target.files];
-    if (chosen.length) showFiles(sceneFirst(chosen));
+    if (event.target.files.length) showFiles(together(event.target.files));
     event.target.value = '';
   });
   let over = 0;
@@ -121,7 +117,9 @@ export function wireScenes() {
     event.preventDefault();
     over = 0;
     $('drop').hidden = true;
-    const dropped = [...event.dataTransfer.files];
-    if (dropped.length) showFiles(sceneFirst(dropped));
+    dropped(event.dataTransfer).then(
+      (files) => (files.length ? showFiles(files) : null),
+      (cause) => refuse(`What was dropped cannot be shown: ${cause.message}`),
+    );
   });
 }

@@ -50,6 +50,49 @@ test('a .gltf is shown with the files that it names, and without them says which
   await page.context().close();
 });
 
+/** Drops a folder, as the browser tells of one; `content` holds bytes by paths. */
+const dropFolder = (page, folder, content) => page.evaluate(({ folder, content }) => {
+  const entry = (path, inside) => (typeof inside === 'string'
+    ? { isFile: true, isDirectory: false, fullPath: path, file: (done) => done(new File([Uint8Array.from(atob(inside), (c) => c.charCodeAt(0))], path.split('/').at(-1))) }
+    : {
+      isFile: false,
+      isDirectory: true,
+      fullPath: path,
+      createReader() {
+        // One at a time, as readers may.
+        const left = Object.entries(inside).map(([name, within]) => entry(`${path}/${name}`, within));
+        return { readEntries: (done) => done(left.splice(0, 1)) };
+      },
+    });
+  const event = new DragEvent('drop', { bubbles: true, cancelable: true });
+  const items = [{ kind: 'file', webkitGetAsEntry: () => entry(`/${folder}`, content) }];
+  Object.defineProperty(event, 'dataTransfer', { value: { items, files: [] } });
+  dispatchEvent(event);
+}, { folder, content });
+
+test('a dropped folder shows its scene, with files of one name in two folders', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
+  await settled(page);
+  const text = (bytes) => bytes.toString('base64');
+  const [gltf, bin] = apart();
+  const wrong = { 'apart.gltf': text(Buffer.from('{}')), 'the triangle.bin': text(Buffer.alloc(36)) };
+  await dropFolder(page, 'model', { 'read me.txt': '', older: wrong, 'apart.gltf': text(gltf), data: { 'the triangle.bin': text(bin) } });
+  await page.waitForFunction(() => document.getElementById('scene').value === 'apart.gltf');
+  const red = redPixels(await picture(page, false));
+  assert.ok(red > 100, `${red} red pixels`);
+  // Up and down again.
+  const json = JSON.parse(gltf);
+  json.buffers[0].uri = '../data/the%20triangle.bin';
+  await dropFolder(page, 'model', { gltf: { 'up.gltf': text(Buffer.from(JSON.stringify(json))) }, data: { 'the triangle.bin': text(bin) } });
+  await page.waitForFunction(() => document.getElementById('scene').value === 'up.gltf');
+  await dropFolder(page, 'pictures', { 'a.png': '' });
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /no \.glb and no \.gltf in it/);
+  assert.equal(await page.locator('#scene').inputValue(), 'up.gltf');
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
 test('a scene without geometry is shown, and its camera moves', async () => {
   const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
   await settled(page);

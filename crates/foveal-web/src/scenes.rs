@@ -54,7 +54,8 @@ pub(crate) fn generated(name: &str) -> Result<Scene, String> {
     Ok(scene)
 }
 
-/// Files that a visitor gave together with a scene, by their names: a map of `ArrayBuffer`s.
+/// Files that a visitor gave together with a scene, by the way to them from its folder: a map of
+/// `ArrayBuffer`s.
 pub(crate) struct Beside(BTreeMap<String, Vec<u8>>);
 
 impl Beside {
@@ -68,9 +69,11 @@ impl Beside {
         Self(found)
     }
 
-    /// The file of a URI: a page does not know the folders that files come from.
+    /// The file of a URI. Of files that came without folders a page knows their names alone.
     fn get(&self, uri: &str) -> Option<&Vec<u8>> {
-        self.0.get(uri.rsplit(['/', '\\']).next().unwrap_or(uri))
+        let path = uri.strip_prefix("./").unwrap_or(uri);
+        let name = uri.rsplit(['/', '\\']).next().unwrap_or(uri);
+        self.0.get(path).or_else(|| self.0.get(name))
     }
 }
 

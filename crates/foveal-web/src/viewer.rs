@@ -203,8 +203,8 @@ impl Viewer {
     }
 
     /// Shows a `.glb` or a `.gltf`; tells its figures and its camera as JSON. `beside` holds the
-    /// files that it names, as far as they were given: a map of `ArrayBuffer`s by their names,
-    /// without folders. The old scene stays where it fails.
+    /// files that it names, as far as they were given: a map of `ArrayBuffer`s by the way to them
+    /// from its folder, or by their names alone. The old scene stays where it fails.
     ///
     /// # Errors
     /// A sentence that names the file, the place and the cause.
