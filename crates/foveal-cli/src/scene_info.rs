@@ -92,6 +92,8 @@ struct SceneInfo {
     clips: Vec<ClipInfo>,
     /// Names of variants of materials.
     variants: Vec<String>,
+    /// Names of the file's scenes.
+    file_scenes: Vec<String>,
     /// Metres in world space; `None` without geometry.
     bounds: Option<Bounds>,
     cameras: Vec<CameraInfo>,
@@ -157,6 +159,7 @@ impl SceneInfo {
                 })
                 .collect(),
             variants: scene.variants.clone(),
+            file_scenes: scene.file_scenes.clone(),
             bounds: (!bounds.is_empty()).then(|| Bounds {
                 min: bounds.min.into(),
                 max: bounds.max.into(),
@@ -236,6 +239,13 @@ impl SceneInfo {
         for (number, name) in self.variants.iter().enumerate() {
             let title = if number == 0 { "variants" } else { "" };
             line(title, format!("{number}: '{name}'"));
+        }
+        // One alone need not be chosen.
+        for (number, name) in self.file_scenes.iter().enumerate() {
+            let title = if number == 0 { "scenes" } else { "" };
+            if self.file_scenes.len() > 1 {
+                line(title, format!("{number}: '{name}'"));
+            }
         }
         match &self.bounds {
             Some(Bounds { min, max }) => {

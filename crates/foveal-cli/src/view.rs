@@ -83,6 +83,7 @@ fn host(args: &Args) -> anyhow::Result<Host> {
         if name != first {
             options.clip = Clip::default();
             options.variant = None;
+            options.file_scene = None;
         }
         let scene = scene_source::load_with(name, &options)?;
         let camera = if name == first {

@@ -18,6 +18,11 @@ pub struct ImportArgs {
     #[arg(long, help_heading = "Scene files", value_name = "NAME|NUMBER")]
     variant: Option<String>,
 
+    /// Scene of a glTF file to show, by name or by number from 0 (`foveal scene info` lists them)
+    /// [default: the one that the file names]
+    #[arg(long, help_heading = "Scene files", value_name = "NAME|NUMBER")]
+    file_scene: Option<String>,
+
     /// Keep textures in blocks on the device. `small`, also without a value: BC1, BC4 and BC5, and
     /// BC7 where alpha is read; `fine`: BC7 for BC1. Loading takes longer, and textures are not
     /// quite the same [default: off]
@@ -92,7 +97,11 @@ impl ImportArgs {
     pub fn shown_flags(&self) -> Vec<String> {
         let clip = self.clip.as_ref().map(ToString::to_string);
         let mut flags = Vec::new();
-        for (flag, value) in [("--clip", clip), ("--variant", self.variant.clone())] {
+        for (flag, value) in [
+            ("--clip", clip),
+            ("--variant", self.variant.clone()),
+            ("--file-scene", self.file_scene.clone()),
+        ] {
             if let Some(value) = value {
                 flags.extend([flag.to_owned(), value]);
             }
@@ -134,6 +143,7 @@ impl ImportArgs {
         LoadOptions {
             clip: self.clip.clone().unwrap_or_default(),
             variant: self.variant.clone(),
+            file_scene: self.file_scene.clone(),
             outside_files: self.outside_files,
             texture_compression: self.texture_compression.unwrap_or_default(),
             max_file_bytes: self.max_file_size.unwrap_or(d.max_file_bytes),
@@ -237,6 +247,8 @@ mod tests {
             "Run",
             "--variant",
             "red",
+            "--file-scene",
+            "1",
         ];
         let some = Line::try_parse_from(words).unwrap().import.options();
         let expected = LoadOptions {
@@ -246,6 +258,7 @@ mod tests {
             texture_compression: TextureCompression::Small,
             clip: Clip::Named("Run".to_owned()),
             variant: Some("red".to_owned()),
+            file_scene: Some("1".to_owned()),
             ..LoadOptions::default()
         };
         assert_eq!(some, expected);
@@ -253,7 +266,7 @@ mod tests {
 
     #[test]
     fn flags_are_written_as_they_are_read() {
-        let words = "foveal --clip Run --variant red --texture-compression=fine --max-texture-memory 1.5GB \
+        let words = "foveal --clip Run --variant red --file-scene 1 --texture-compression=fine --max-texture-memory 1.5GB \
                      --max-texture-size 64 --max-vertices 7 --max-instances 8 --max-triangles 9 \
                      --max-file-size 2GiB --max-expansion 10 --outside-files";
         for words in [words, "foveal", "foveal --max-texture-size 64"] {

@@ -39,8 +39,11 @@ pub fn load_timed(
     }
     match generate::by_name(name) {
         Ok(mut scene) => {
-            if options.variant.is_some() || !scene.play(&options.clip) {
-                bail!("the generated scene '{name}' has neither clips nor variants");
+            let asks_for_one = options.variant.is_some() || options.file_scene.is_some();
+            if asks_for_one || !scene.play(&options.clip) {
+                bail!(
+                    "the generated scene '{name}' has neither clips nor variants nor further scenes"
+                );
             }
             load_ms.push(timing("generate", start.elapsed().as_secs_f64() * 1e3));
             if options.texture_compression != TextureCompression::Off {
@@ -60,14 +63,15 @@ pub fn load_with(name: &str, options: &LoadOptions) -> anyhow::Result<Scene> {
     load_timed(name, options, &mut Vec::new())
 }
 
-/// As [`load_with`], for commands that show several scenes: clip and variant are those of files, as a
-/// generated scene has neither.
+/// As [`load_with`], for commands that show several scenes: clip, variant and scene are those of files, as
+/// a generated scene has none.
 pub fn load_among(name: &str, options: &LoadOptions) -> anyhow::Result<Scene> {
     let base = name.split(':').next().unwrap_or(name);
     if generate::NAMES.contains(&base) {
         let options = LoadOptions {
             clip: Clip::default(),
             variant: None,
+            file_scene: None,
             ..options.clone()
         };
         return load_with(name, &options);

@@ -31,6 +31,9 @@ pub struct LoadOptions {
     /// Which of the file's variants of materials is shown (KHR_materials_variants), by name or by
     /// number from 0; `None`: the materials as they are without.
     pub variant: Option<String>,
+    /// Which of a glTF file's scenes is shown, by name or by number from 0; `None`: the one that the
+    /// file names, else its first.
+    pub file_scene: Option<String>,
     /// Use the threads of the current rayon pool; without, everything happens on the caller's
     /// thread.
     pub parallel: bool,
@@ -69,7 +72,7 @@ pub struct LoadOptions {
 }
 
 impl Default for LoadOptions {
-    /// At time 0 of the first clip, no variant, parallel, flat normals, own folder only, only what
+    /// At time 0 of the first clip, no variant, the file's own scene, parallel, flat normals, own folder only, only what
     /// is shown, textures as texels; 4 GiB of files, 8192-texel textures, 4 GiB of them, 64 Mi
     /// vertices, 4 Mi instances, 4 Gi triangles, 256 bytes per byte.
     fn default() -> Self {
@@ -77,6 +80,7 @@ impl Default for LoadOptions {
             time_s: 0.0,
             clip: Clip::default(),
             variant: None,
+            file_scene: None,
             parallel: true,
             missing_normals: MissingNormals::Flat,
             outside_files: false,

@@ -119,6 +119,9 @@ pub struct Scene {
     /// Names of the file's variants of materials;
     /// [`LoadOptions::variant`](crate::LoadOptions::variant) chooses one.
     pub variants: Vec<String>,
+    /// Names of the scenes that the file holds, empty where one has none;
+    /// [`LoadOptions::file_scene`](crate::LoadOptions::file_scene) chooses one.
+    pub file_scenes: Vec<String>,
     /// Warnings of the importer: parts of the file that it could not honour.
     pub warnings: Vec<Warning>,
     /// Animations, with their nodes, skins and morph targets, that [`Scene::pose`] plays; none by

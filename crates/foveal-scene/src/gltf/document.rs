@@ -183,13 +183,7 @@ impl Document {
 impl Document {
     /// Gives each primitive the material that it has in a variant, by name or by number.
     pub(crate) fn choose_variant(&mut self, wanted: &str) -> Parsed<()> {
-        let named = self.variants.iter().position(|name| name == wanted);
-        let numbered = || wanted.parse().ok().filter(|n| *n < self.variants.len());
-        let Some(number) = named.or_else(numbered) else {
-            let names = self.variants.iter().enumerate();
-            let names = names.map(|(i, name)| format!("{i} '{name}'"));
-            return Err(super::no_such("variant", wanted, names.collect()));
-        };
+        let number = super::chosen("variant", wanted, &self.variants)?;
         for mesh in &mut self.meshes {
             mesh.choose_variant(number as u32);
         }

@@ -112,9 +112,15 @@ fn import_checked(
     };
     let mut watch = Stopwatch::start();
     let container = container::split(bytes).map_err(not_gltf)?;
-    let root = serde_json::from_slice(container.json)
+    let mut root = serde_json::from_slice(container.json)
         .map_err(|e| not_gltf(format!("its JSON is broken: {e}")))?;
     warn.extend(container.notes);
+    let file_scenes = scene_names(&root);
+    if let Some(wanted) = &options.file_scene {
+        root["scene"] = chosen("scene", wanted, &file_scenes)
+            .map_err(|e| e.in_file(file))?
+            .into();
+    }
     // Before they are read, with what is known of the files so far.
     let known = Budget::new(bytes.len() as u64, options);
     materials::take_memory(Obj::of(&root).map_or(0, |o| o.len_of("materials")), &known)
@@ -151,6 +157,7 @@ fn import_checked(
     scene.timings.read_ms += read_ms;
     scene.timings.geometry_ms += decompress_ms;
     scene.variants.clone_from(&document.variants);
+    scene.file_scenes = file_scenes;
     scene.warnings = limited(warn);
     Ok(scene)
 }
@@ -260,6 +267,27 @@ fn choose_clip(scene: &mut Scene, clip: &Clip) -> Parsed<()> {
         .enumerate()
         .map(|(i, (name, _))| format!("{i} '{name}'"));
     Err(no_such("clip", clip, names.collect()).under("animations"))
+}
+
+/// The scenes' names, as far as they can be read; what is wrong with them is found later.
+fn scene_names(root: &serde_json::Value) -> Vec<String> {
+    let scenes = root.get("scenes").and_then(serde_json::Value::as_array);
+    let name = |scene: &serde_json::Value| {
+        let name = scene.get("name").and_then(serde_json::Value::as_str);
+        name.unwrap_or_default().to_owned()
+    };
+    scenes.into_iter().flatten().map(name).collect()
+}
+
+/// The number of what is asked for by name, or else by number.
+fn chosen(what: &str, wanted: &str, names: &[String]) -> Parsed<usize> {
+    let named = names.iter().position(|name| name == wanted);
+    let numbered = || wanted.parse().ok().filter(|n| *n < names.len());
+    named.or_else(numbered).ok_or_else(|| {
+        let known = names.iter().enumerate();
+        let known = known.map(|(i, name)| format!("{i} '{name}'"));
+        no_such(what, wanted, known.collect())
+    })
 }
 
 /// The fault of asking for what a file does not have.

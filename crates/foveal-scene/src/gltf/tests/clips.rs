@@ -196,3 +196,28 @@ fn an_overview_shows_what_a_clip_makes_grow_out_of_nothing() {
         assert!((part - expected).abs() < 0.01, "{first}: {part}");
     }
 }
+
+#[test]
+fn the_scene_that_is_asked_for_is_shown() {
+    let mut file = File::with_triangle();
+    file.json["nodes"] = json!([
+        { "name": "near", "mesh": 0 },
+        { "name": "far", "mesh": 0, "translation": [0, 0, -9] },
+    ]);
+    file.json["scenes"] = json!([{ "name": "one", "nodes": [0] }, { "nodes": [0, 1] }]);
+    file.json["scene"] = json!(1);
+    let of = |scene: Option<&str>| LoadOptions {
+        file_scene: scene.map(str::to_owned),
+        ..LoadOptions::default()
+    };
+    for (asked, instances) in [(None, 2), (Some("one"), 1), (Some("0"), 1), (Some("1"), 2)] {
+        let scene = file.load_with(&of(asked)).expect("it is well formed");
+        assert_eq!(scene.instances.len(), instances, "{asked:?}");
+        assert_eq!(scene.file_scenes, ["one", ""]);
+    }
+    let error = file.load_with(&of(Some("two"))).unwrap_err().to_string();
+    assert!(
+        error.ends_with("has no scene 'two'; there are: 0 'one', 1 ''"),
+        "{error}"
+    );
+}
