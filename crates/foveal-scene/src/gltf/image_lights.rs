@@ -2,7 +2,7 @@
 //!
 //! The first of each light's levels is read: renderers filter it themselves. What the extension
 //! leaves open is taken as the file's own data agree best: which of the first two pictures faces +x,
-//! and the signs and the scale of the irradiance.
+//! whether pictures have their top above or below, and the signs and the scale of the irradiance.
 
 use std::sync::Arc;
 
@@ -241,10 +241,13 @@ fn finish(def: &ImageLightDef, mut sides: Vec<Vec<[f32; 3]>>) -> ImageLight {
     if seam(&sides, [1, 4, 0, 5], side) < seam(&sides, [0, 4, 1, 5], side) {
         sides.swap(0, 1);
     }
+    let upside_down = lids(&sides, side, true) < lids(&sides, side, false);
     // Seen from within they are mirrored: graphics APIs see them from without.
     for texels in &mut sides {
-        for row in texels.chunks_mut(side) {
-            row.reverse();
+        if upside_down {
+            texels.reverse();
+        } else {
+            texels.chunks_mut(side).for_each(<[_]>::reverse);
         }
     }
     let radiance = sides.concat();
@@ -266,22 +269,43 @@ fn seam(sides: &[Vec<[f32; 3]>], ring: [usize; 4], side: usize) -> f32 {
     let apart = |(i, y): (usize, usize)| -> f32 {
         let right = sides[ring[i]][y * side + side - 1];
         let left = sides[ring[(i + 1) % 4]][y * side];
-        // Suns must not outweigh all else.
-        let squeezed = |v: f32| v / (1.0 + v);
-        right
-            .iter()
-            .zip(left)
-            .map(|(&a, b)| (squeezed(a) - squeezed(b)).abs())
-            .sum()
+        apart(right, left)
     };
     edges.map(apart).sum()
 }
 
-/// Signs that harmonics are defined with: none; the Condon-Shortley phase; that of directions whose
-/// x is mirrored, as Babylon.js has them.
-const SIGNS: [[f32; 9]; 3] = [
+/// How much the pictures above and below differ from those of +z and -z where they meet, with the
+/// rows of all from the top or, upside down, from the bottom.
+fn lids(sides: &[Vec<[f32; 3]>], side: usize, upside_down: bool) -> f32 {
+    let row = |picture: usize, y: usize| {
+        let y = if upside_down { side - 1 - y } else { y };
+        &sides[picture][y * side..][..side]
+    };
+    let last = side - 1;
+    let (above, below) = (2, 3);
+    let forth = [(row(above, last), row(4, 0)), (row(below, 0), row(4, last))];
+    let back = [(row(above, 0), row(5, 0)), (row(below, last), row(5, last))];
+    let forth = forth.into_iter().flat_map(|(lid, of)| lid.iter().zip(of));
+    let back = back.into_iter();
+    let back = back.flat_map(|(lid, of)| lid.iter().rev().zip(of));
+    forth.chain(back).map(|(&a, &b)| apart(a, b)).sum()
+}
+
+/// How much two texels differ. Suns must not outweigh all else.
+fn apart(a: [f32; 3], b: [f32; 3]) -> f32 {
+    let squeezed = |v: f32| v / (1.0 + v);
+    let channels = a.into_iter().zip(b);
+    channels
+        .map(|(a, b)| (squeezed(a) - squeezed(b)).abs())
+        .sum()
+}
+
+/// Signs that harmonics are defined with: none; the Condon-Shortley phase; both of directions whose
+/// x is mirrored, as Khronos's EnvironmentTest and Babylon.js have them.
+const SIGNS: [[f32; 9]; 4] = [
     [1.0; 9],
     [1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0],
+    [1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, 1.0],
     [1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, 1.0],
 ];
 

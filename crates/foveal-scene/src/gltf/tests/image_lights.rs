@@ -74,8 +74,18 @@ fn what_the_extension_leaves_open_is_read_as_the_file_agrees_with_itself() {
     let images = &mut light(&mut swapped)["specularImages"][0];
     images.as_array_mut().unwrap().swap(0, 1);
     assert_eq!(read(&swapped).radiance, plain.radiance);
+    // Khronos's EnvironmentTest has them upside down besides. Seen from within, a world whose y is
+    // mirrored shows all but above and below so.
+    let mut turned = surrounded(16, &|[x, y, z]| colors([x, -y, z]));
+    let images = &mut light(&mut turned)["specularImages"][0];
+    images.as_array_mut().unwrap().swap(2, 3);
+    assert_eq!(read(&turned).radiance, plain.radiance);
+    let images = &mut light(&mut turned)["specularImages"][0];
+    images.as_array_mut().unwrap().swap(0, 1);
+    assert_eq!(read(&turned).radiance, plain.radiance);
     for signs in [
         [1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0],
+        [1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, 1.0],
         [1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, 1.0],
     ] {
         let mut file = surrounded(16, &colors);
