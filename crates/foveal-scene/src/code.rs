@@ -129,7 +129,7 @@ codes! {
     ExtensionRequired = "EXTENSION_REQUIRED",
     /// The file uses an extension that is not supported, and is shown without it.
     ExtensionIgnored = "EXTENSION_IGNORED",
-    /// The file uses an extension that is honoured in part.
+    /// The file uses an extension that is honoured in part. At present there is none.
     ExtensionApproximated = "EXTENSION_APPROXIMATED",
     /// The file asks for more than a limit.
     LimitExceeded = "LIMIT_EXCEEDED",

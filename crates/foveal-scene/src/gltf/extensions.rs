@@ -18,6 +18,7 @@ const HONOURED: &[&str] = &[
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_iridescence",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_sheen",
     "KHR_materials_specular",
     "KHR_materials_transmission",
@@ -30,12 +31,6 @@ const HONOURED: &[&str] = &[
     "KHR_texture_basisu",
     "KHR_texture_transform",
 ];
-
-/// Read, but turned into something near it.
-const APPROXIMATED: &[(&str, &str)] = &[(
-    "KHR_materials_pbrSpecularGlossiness",
-    "its diffuse colour is shown as that of a dielectric, its specular colour is not",
-)];
 
 /// Without effect on a picture: metadata, interaction, sound, physics.
 const INVISIBLE: &[&str] = &[
@@ -68,10 +63,7 @@ const CONVERSIONS: &[(&str, &str)] = &[(
 
 /// Fails on unsupported required extensions, warns of unsupported used ones.
 pub(crate) fn check(root: Obj<'_>, warn: &mut Vec<Warning>) -> Parsed<()> {
-    let approximated = |name: &str| APPROXIMATED.iter().find(|(known, _)| *known == name);
-    let honoured = |name: &str| {
-        HONOURED.contains(&name) || INVISIBLE.contains(&name) || approximated(name).is_some()
-    };
+    let honoured = |name: &str| HONOURED.contains(&name) || INVISIBLE.contains(&name);
     let mut missing = root.strings("extensionsRequired")?;
     missing.retain(|name| !honoured(name));
     missing.sort_unstable();
@@ -83,12 +75,7 @@ pub(crate) fn check(root: Obj<'_>, warn: &mut Vec<Warning>) -> Parsed<()> {
     used.sort_unstable();
     used.dedup();
     for name in used {
-        if let Some((_, how)) = approximated(name) {
-            warn.push(Warning::new(
-                Code::ExtensionApproximated,
-                format!("extensionsUsed: {name} is approximated: {how}"),
-            ));
-        } else if !honoured(name) && !TEXTURE_FORMATS.contains(&name) {
+        if !honoured(name) && !TEXTURE_FORMATS.contains(&name) {
             warn.push(Warning::new(
                 Code::ExtensionIgnored,
                 format!("extensionsUsed: {name} is not supported; the file is shown without it"),

@@ -17,6 +17,8 @@ pub(crate) struct MaterialDef {
     pub(crate) material: Material,
     pub(crate) base_color: Option<SlotDef>,
     pub(crate) metallic_roughness: Option<SlotDef>,
+    /// Of specular-glossiness: alpha of the texture above, times this factor, is the glossiness.
+    pub(crate) glossiness: Option<f32>,
     pub(crate) normal: Option<SlotDef>,
     pub(crate) occlusion: Option<SlotDef>,
     pub(crate) emissive: Option<SlotDef>,
@@ -65,8 +67,19 @@ impl MaterialDef {
             emissive_strength = strength.unwrap_or(1.0).max(0.0);
         }
         material.emissive = emission(emissive_factor, emissive_strength);
-        let (mut base_color, mut metallic_roughness) = (None, None);
-        if let Some(pbr) = o.object("pbrMetallicRoughness")? {
+        let (mut base_color, mut metallic_roughness, mut glossiness) = (None, None, None);
+        let pbr = o.object("pbrMetallicRoughness")?;
+        // Where a file has both this one counts, but its colour is not what is shown unlit.
+        let old = o.extension("KHR_materials_pbrSpecularGlossiness")?;
+        let old = old.filter(|_| !material.unlit || pbr.is_none());
+        if let Some(old) = old {
+            let within = |e: Flaw| e.under("extensions.KHR_materials_pbrSpecularGlossiness");
+            let factor = read_glossiness(&mut material, old, counts).map_err(within)?;
+            base_color = slot(old, "diffuseTexture").map_err(within)?;
+            metallic_roughness = slot(old, "specularGlossinessTexture").map_err(within)?;
+            glossiness = metallic_roughness.map(|_| factor);
+            material.roughness = glossiness.map_or(1.0 - factor, |_| 1.0);
+        } else if let Some(pbr) = pbr {
             let within = |e: Flaw| e.under("pbrMetallicRoughness");
             let factors = || -> Parsed<(Vec4, f32, f32)> {
                 Ok((
@@ -81,16 +94,6 @@ impl MaterialDef {
             material.roughness = roughness.clamp(0.0, 1.0);
             base_color = slot(pbr, "baseColorTexture").map_err(within)?;
             metallic_roughness = slot(pbr, "metallicRoughnessTexture").map_err(within)?;
-        } else if let Some(old) = o.extension("KHR_materials_pbrSpecularGlossiness")? {
-            let within = |e: Flaw| e.under("extensions.KHR_materials_pbrSpecularGlossiness");
-            let diffuse = old.floats("diffuseFactor").map_err(within)?;
-            let glossiness = old.float("glossinessFactor").map_err(within)?;
-            material.base_color = diffuse
-                .map_or(Vec4::ONE, Vec4::from)
-                .clamp(Vec4::ZERO, Vec4::ONE);
-            material.metallic = 0.0;
-            material.roughness = 1.0 - glossiness.unwrap_or(1.0).clamp(0.0, 1.0);
-            base_color = slot(old, "diffuseTexture").map_err(within)?;
         }
         if let Some(normal) = o.object("normalTexture")? {
             let scale = normal.float("scale").map_err(|e| e.under("normalTexture"));
@@ -101,7 +104,9 @@ impl MaterialDef {
             let strength = strength.map_err(|e| e.under("occlusionTexture"))?;
             material.occlusion_strength = strength.unwrap_or(1.0).clamp(0.0, 1.0);
         }
-        read_specular(&mut material, o, counts)?;
+        if old.is_none() {
+            read_specular(&mut material, o, counts)?;
+        }
         if !material.unlit {
             lobes::read(&mut material, o, counts)?;
         }
@@ -109,6 +114,7 @@ impl MaterialDef {
             material,
             base_color,
             metallic_roughness,
+            glossiness,
             normal: slot(o, "normalTexture")?,
             occlusion: slot(o, "occlusionTexture")?,
             emissive: slot(o, "emissiveTexture")?,
@@ -223,6 +229,19 @@ fn read_specular(material: &mut Material, o: Obj<'_>, counts: &Counts) -> Parsed
             texture(e, "specularColorTexture", counts).map_err(within)?;
     }
     Ok(())
+}
+
+/// KHR_materials_pbrSpecularGlossiness, as a dielectric whose reflectance at right angles is the
+/// specular colour: its index of refraction reflects everything. Gives the factor of glossiness.
+fn read_glossiness(material: &mut Material, o: Obj<'_>, counts: &Counts) -> Parsed<f32> {
+    let diffuse = o.floats("diffuseFactor")?.map_or(Vec4::ONE, Vec4::from);
+    material.base_color = diffuse.clamp(Vec4::ZERO, Vec4::ONE);
+    material.metallic = 0.0;
+    material.ior = 0.0;
+    let color = o.floats("specularFactor")?.map_or(Vec3::ONE, Vec3::from);
+    material.specular_color = color.clamp(Vec3::ZERO, Vec3::ONE);
+    material.specular_color_texture = texture(o, "specularGlossinessTexture", counts)?;
+    Ok(o.float("glossinessFactor")?.unwrap_or(1.0).clamp(0.0, 1.0))
 }
 
 /// The sets that a primitive without a material carries along.

@@ -282,7 +282,8 @@ struct Finished {
 }
 
 /// The textures of a KTX2 file whose own blocks and levels are those that are wanted; else `None`. Mip
-/// levels of an alpha mask are made anew: the file's own need not keep its coverage.
+/// levels of an alpha mask are made anew: the file's own need not keep its coverage. Glossiness becomes
+/// roughness first.
 #[cfg(not(target_arch = "wasm32"))]
 fn transcoded(
     source: &Source<'_>,
@@ -301,7 +302,8 @@ fn transcoded(
     let has_levels = |one: &Use| wanted.keys[one.number].sampler.mip.is_some();
     let all = source.uses.iter().any(has_levels);
     let is_mask = |one: &Use| matches!(wanted.keys[one.number].role, Role::Cutout(Some(_)));
-    if (source.uses.iter()).any(|one| is_mask(one) && has_levels(one)) {
+    let is_gloss = |one: &Use| matches!(wanted.keys[one.number].role, Role::Glossiness(_));
+    if (source.uses.iter()).any(|one| is_gloss(one) || is_mask(one) && has_levels(one)) {
         return None;
     }
     // What cannot be transcoded is decoded, or says why not.
@@ -384,6 +386,7 @@ fn build(
     largest: u32,
 ) -> Texture {
     let drop = levels_to_drop(width, height, largest);
+    let pixels = key.role.texels(pixels);
     let mut levels = if key.sampler.mip.is_some() || drop > 0 {
         mip::chain(pixels, width, height, key.role.content())
     } else {
@@ -438,7 +441,7 @@ fn placeholder(role: Role, only_emissive: bool) -> (Vec<u8>, u32) {
             };
             ((0..64).flat_map(texel).collect(), 8)
         }
-        Role::Data => plain([255; 4]),
+        Role::Data | Role::Glossiness(_) => plain([255; 4]),
         Role::Normal => plain([128, 128, 255, 255]),
     }
 }

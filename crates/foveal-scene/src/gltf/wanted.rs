@@ -19,23 +19,36 @@ pub(super) enum Role {
     Cutout(Option<u32>),
     Data,
     Normal,
+    /// Glossiness in alpha, times a factor of these bits: read as roughness, in green.
+    Glossiness(u32),
 }
 
 impl Role {
+    /// A picture's RGBA texels as the textures of this role have them.
+    pub(super) fn texels(self, mut pixels: Vec<u8>) -> Vec<u8> {
+        if let Self::Glossiness(bits) = self {
+            for texel in pixels.as_chunks_mut::<4>().0 {
+                let rough = 255.0 - f32::from_bits(bits) * f32::from(texel[3]);
+                *texel = [255, rough.round() as u8, 255, 255];
+            }
+        }
+        pixels
+    }
+
     pub(super) fn content(self) -> Content {
         match self {
             Self::Color => Content::Color,
             Self::Cutout(bits) => Content::Cutout {
                 threshold: bits.map(f32::from_bits),
             },
-            Self::Data => Content::Data,
+            Self::Data | Self::Glossiness(_) => Content::Data,
             Self::Normal => Content::Normal,
         }
     }
 
     pub(super) fn color_space(self) -> ColorSpace {
         match self {
-            Self::Data | Self::Normal => ColorSpace::Linear,
+            Self::Data | Self::Normal | Self::Glossiness(_) => ColorSpace::Linear,
             _ => ColorSpace::Srgb,
         }
     }
@@ -71,6 +84,8 @@ impl Wanted {
                 Role::Cutout(Some(threshold.clamp(0.0, 1.0).to_bits()))
             }
         };
+        let glossiness = |factor: f32| Role::Glossiness(factor.to_bits());
+        let roughness_role = def.glossiness.map_or(Role::Data, glossiness);
         let mut slot = |slot: Option<SlotDef>, role, emissive| {
             let slot = slot?;
             let texture = self.number(slot, role, document);
@@ -126,7 +141,7 @@ impl Wanted {
             specular_texture: slot(further(plain.specular_texture), Role::Data, false),
             specular_color_texture: slot(further(plain.specular_color_texture), Role::Color, false),
             base_color_texture: slot(def.base_color, base_role, false),
-            metallic_roughness_texture: slot(def.metallic_roughness, Role::Data, false),
+            metallic_roughness_texture: slot(def.metallic_roughness, roughness_role, false),
             normal_texture: slot(def.normal, Role::Normal, false),
             occlusion_texture: slot(def.occlusion, Role::Data, false),
             emissive_texture: slot(def.emissive, Role::Color, true),

@@ -48,22 +48,6 @@ fn factors_and_modes_are_read() {
 }
 
 #[test]
-fn specular_glossiness_keeps_its_diffuse_colour() {
-    let mut file = File::with_triangle();
-    file.json["extensionsUsed"] = json!(["KHR_materials_pbrSpecularGlossiness"]);
-    file.material(
-        json!({ "extensions": { "KHR_materials_pbrSpecularGlossiness": {
-        "diffuseFactor": [0.5, 0.25, 0, 1], "glossinessFactor": 0.75,
-    } } }),
-    );
-    let scene = file.load();
-    let m = &scene.materials[0];
-    assert_eq!(m.base_color, Vec4::new(0.5, 0.25, 0., 1.));
-    assert_eq!((m.metallic, m.roughness), (0., 0.25));
-    assert!(warnings(&scene).contains("is approximated"));
-}
-
-#[test]
 fn a_primitive_without_material_gets_the_default_one() {
     let scene = File::with_triangle().load();
     assert_eq!(scene.materials, [crate::Material::default()]);

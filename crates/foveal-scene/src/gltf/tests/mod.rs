@@ -5,6 +5,7 @@ mod clips;
 mod codes;
 mod compressed;
 mod geometry;
+mod glossiness;
 mod hostile;
 mod image_lights;
 mod lobes;
