@@ -283,5 +283,10 @@ mod tests {
         assert!(texture.decoded_level(1).is_empty());
         texture.levels[0].pop();
         assert!(texture.decoded_level(0).is_empty());
+        for encoding in [Encoding::Rgba8, Encoding::Bc1, Encoding::Bc7] {
+            (texture.width, texture.height) = (u32::MAX, u32::MAX);
+            texture.encoding = encoding;
+            assert!(texture.decoded_level(0).is_empty());
+        }
     }
 }

@@ -28,7 +28,13 @@ pub struct ImageLight {
 
 impl ImageLight {
     /// Takes means of 2 x 2 texels until a side has at most so many: filtering takes time and memory.
+    /// One that has not the texels of six sides stays as it is; renderers refuse it.
     pub fn halve_to(&mut self, most: u32) {
+        let texels = self.radiance.len();
+        let of_side = u64::from(self.side) * u64::from(self.side);
+        if !texels.is_multiple_of(6) || texels as u64 / 6 != of_side {
+            return;
+        }
         while self.side > most.max(1) {
             let side = self.side as usize;
             let sides = self.radiance.chunks(side * side);
@@ -103,4 +109,25 @@ pub(crate) fn irradiance_of(side: usize, radiance: &[[f32; 3]]) -> [[f32; 3]; 9]
     }
     let scale = 4.0 * std::f64::consts::PI / sphere;
     std::array::from_fn(|k| sums[k].map(|v| (v * scale) as f32 * COSINE[k]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_lacks_texels_is_not_halved() {
+        for (side, texels) in [(4, 95), (4, 97), (4, 0), (4, 6), (u32::MAX, 6)] {
+            let mut light = ImageLight {
+                name: String::new(),
+                rotation: Quat::IDENTITY,
+                intensity: 1.0,
+                side,
+                radiance: vec![[1.0; 3]; texels].into(),
+                irradiance: [[0.0; 3]; 9],
+            };
+            light.halve_to(2);
+            assert_eq!((light.side, light.radiance.len()), (side, texels));
+        }
+    }
 }

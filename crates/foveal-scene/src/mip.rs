@@ -10,6 +10,8 @@ use std::ops::Range;
 
 use coverage::Mask;
 
+use crate::Encoding;
+
 /// What the channels mean for filtering.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Content {
@@ -31,12 +33,19 @@ pub enum Content {
 }
 
 /// Number of levels down to 1 x 1.
+#[must_use]
 pub fn level_count(width: u32, height: u32) -> u32 {
     32 - width.max(height).max(1).leading_zeros()
 }
 
-/// All levels of a picture, level 0 as given. `pixels` has `width * height * 4` bytes.
+/// All levels of a picture, level 0 as given. `pixels` has `width * height * 4` bytes, and sides are
+/// at least 1; otherwise level 0 is alone, and renderers refuse the texture by its name.
+#[must_use]
 pub fn chain(pixels: Vec<u8>, width: u32, height: u32, content: Content) -> Vec<Vec<u8>> {
+    let bytes = Encoding::Rgba8.level_bytes(width, height);
+    if bytes == 0 || pixels.len() as u64 != bytes {
+        return vec![pixels];
+    }
     let (mut w, mut h) = (width as usize, height as usize);
     let count = level_count(width, height) as usize;
     let mut levels = Vec::with_capacity(count);
@@ -280,6 +289,26 @@ mod tests {
 
     fn reds(level: &[u8]) -> Vec<u8> {
         level.iter().step_by(4).copied().collect()
+    }
+
+    #[test]
+    fn a_picture_of_another_size_is_a_level_alone() {
+        for (w, h, bytes) in [
+            (2, 2, 15),
+            (2, 2, 17),
+            (2, 2, 0),
+            (0, 0, 4),
+            (0, 4, 0),
+            (0, 4, 16),
+            (u32::MAX, u32::MAX, 16),
+        ] {
+            for threshold in [None, Some(0.5)] {
+                for content in [Content::Color, Content::Cutout { threshold }] {
+                    let levels = chain(vec![7; bytes], w, h, content);
+                    assert_eq!(levels, [vec![7; bytes]], "{w} x {h}, {bytes} bytes");
+                }
+            }
+        }
     }
 
     #[test]

@@ -112,11 +112,11 @@ impl Encoding {
         }
     }
 
-    /// Bytes of a level of `width` x `height` texels.
+    /// Bytes of a level of `width` x `height` texels; [`u64::MAX`] where they are more.
     #[must_use]
     pub fn level_bytes(self, width: u32, height: u32) -> u64 {
         let blocks = |texels: u32| u64::from(texels.div_ceil(self.block_side()));
-        blocks(width) * blocks(height) * u64::from(self.block_bytes())
+        (blocks(width) * blocks(height)).saturating_mul(u64::from(self.block_bytes()))
     }
 
     /// Whether a texture of this size can be on a device so: WebGPU wants whole blocks on level 0.
