@@ -40,7 +40,8 @@ pub struct Mesh {
     pub points: Vec<u32>,
     /// Smallest box around the vertices that triangles, lines and points use, object space.
     pub bounds: Aabb,
-    /// Morph targets or a skin change its vertices from pose to pose. Such a mesh belongs to one
+    /// Morph targets or a skin change its vertices from pose to pose; renderers have to know from the
+    /// beginning. Such a mesh belongs to one
     /// node; the vertices of a skinned one are in world space, and its instances' matrices the
     /// identity. Where its joints mirror it, the vertices have x negated, and so have the matrices:
     /// triangles are clockwise in world space then, as in any mirrored instance.

@@ -50,8 +50,9 @@ pub enum Error {
         /// The texture's name.
         texture: String,
     },
-    /// An instance, material or mesh of a scene has an index of something that is not there, or a
-    /// texture or its own environment has other texels than its size says.
+    /// An instance, material or mesh of a scene has an index of something that is not there, a number
+    /// is not finite, or a texture or the scene's own environment has other texels than its size
+    /// says.
     #[error("the scene cannot be drawn: {cause}")]
     Scene {
         /// The place, its index, and how many there are.

@@ -62,9 +62,11 @@ fn parse_light(o: Obj<'_>) -> Parsed<Light> {
     })
 }
 
-/// Moves a light to its node: rays travel along the node's −z; scale does not touch it.
+/// Moves a light to its node: rays travel along the node's −z; scale does not touch it. Beyond the
+/// range of numbers it is as far away as they reach, and lights nothing.
 pub(crate) fn place(light: &mut Light, world_from_node: Mat4) {
-    light.position = world_from_node.w_axis.truncate();
+    let position = world_from_node.w_axis.truncate();
+    light.position = position.max(Vec3::MIN).min(Vec3::MAX);
     light.direction = (-world_from_node.z_axis.truncate())
         .try_normalize()
         .unwrap_or(Vec3::NEG_Z);

@@ -15,7 +15,8 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Scene`] where an instance's mesh, material or object, a material's texture, or a
-    /// mesh's vertex is not there, and where a texture or the scene's own environment has other texels
+    /// mesh's vertex is not there, where a number of an instance, object, light, material or
+    /// environment is not finite, and where a texture or the scene's own environment has other texels
     /// than its size says; [`Error::Limit`] where the scene exceeds the device's limits,
     /// [`Error::NoTexels`], [`Error::OutOfMemory`]; the renderer keeps its old scene then.
     pub async fn set_scene(&mut self, scene: &Scene) -> Result<(), Error> {
@@ -124,8 +125,9 @@ impl Renderer {
     /// # Errors
     /// [`Error::OutOfMemory`]. Call it again then: until it succeeds, objects and lights have the
     /// new pose, and meshes that deform may have the old shape. [`Error::OtherScene`] where meshes,
-    /// materials, objects or instances were added, removed or exchanged, and [`Error::Limit`] where
-    /// there are too many lights: nothing of the pose is taken over then.
+    /// materials, objects or instances were added, removed or exchanged, or a mesh deforms that did
+    /// not; [`Error::Scene`] where a number is not finite, as in [`Renderer::set_scene`], and
+    /// [`Error::Limit`] where there are too many lights: nothing of the pose is taken over then.
     pub async fn update_pose(&mut self, scene: &Scene) -> Result<(), Error> {
         self.scene.check_pose(scene)?;
         self.mend().await?;

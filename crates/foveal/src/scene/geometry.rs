@@ -43,6 +43,8 @@ pub(crate) struct MeshRange {
     /// Points and lines have normals.
     pub(crate) lights_strokes: bool,
     first_stroke_vertex: u32,
+    /// Poses may change its vertices.
+    deforms: bool,
 }
 
 impl MeshRange {
@@ -56,11 +58,17 @@ impl MeshRange {
         }
     }
 
-    /// Whether the mesh has as many vertices and indices as the one that lies here.
-    pub(super) fn holds(&self, mesh: &Mesh) -> bool {
+    /// What keeps a mesh from being the one that lies here in another pose.
+    pub(super) fn differs_from(&self, mesh: &Mesh) -> Option<&'static str> {
         let vertices = u64::from(self.first_stroke_vertex) - self.base_vertex as u64;
         let indices = [self.index_count, self.stroke_index_count].map(u64::from);
-        vertex_counts(mesh)[0] == vertices && index_counts(mesh) == indices
+        if vertex_counts(mesh)[0] != vertices || index_counts(mesh) != indices {
+            Some("has another number of vertices or indices")
+        } else if mesh.deforms && !self.deforms {
+            Some("deforms, which it did not")
+        } else {
+            None
+        }
     }
 
     /// Provoking indices of its triangles.
@@ -207,6 +215,7 @@ impl SceneGeometry {
                 stroke_index_count: index_counts(mesh)[1] as u32,
                 lights_strokes: mesh.lights_strokes(),
                 first_stroke_vertex: (base_vertex + vertices_of_triangles) as u32,
+                deforms: mesh.deforms,
             };
             write_vertices(&mut uploads, &vertices, mesh, range);
             let corners = &mesh.indices[..range.index_count as usize];

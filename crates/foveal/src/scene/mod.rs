@@ -10,6 +10,7 @@ mod instances;
 mod lobes;
 mod material_uniform;
 mod materials;
+mod numbers;
 #[cfg(test)]
 mod posed_tests;
 mod provoking;
@@ -33,6 +34,7 @@ pub(crate) use lobes::LobeClass;
 pub(crate) use lobes::LobesUniform;
 pub(crate) use material_uniform::MaterialUniform;
 pub(crate) use materials::{SceneMaterials, lobes_layout, material_layout};
+use numbers::check_numbers;
 pub(crate) use textures::ArrayLimits;
 
 use std::borrow::Cow;
@@ -113,7 +115,8 @@ impl SceneOnGpu {
     /// Uploads `scene` with these textures, of which its own may have lost their texels.
     ///
     /// # Errors
-    /// [`Error::Scene`] where an index names nothing, or the environment lacks texels;
+    /// [`Error::Scene`] where an index names nothing, a number is not finite, or the environment
+    /// lacks texels;
     /// [`Error::Limit`], [`Error::NoTexels`].
     pub(crate) fn new(
         gpu: &Gpu,
@@ -125,6 +128,7 @@ impl SceneOnGpu {
     ) -> Result<Self, Error> {
         check_lights(scene)?;
         check_indices(scene)?;
+        check_numbers(scene)?;
         let exposure_stops = settings.picture.exposure_stops;
         let lights = LightUniform::all(&scene.lights, exposure_stops);
         let light_table = table_of_lights(gpu, &lights);
@@ -170,7 +174,8 @@ impl SceneOnGpu {
         })
     }
 
-    /// Refuses poses of scenes other than the one that is here.
+    /// Refuses poses of scenes other than the one that is here, and those with numbers that are not
+    /// finite.
     pub(crate) fn check_pose(&self, scene: &Scene) -> Result<(), Error> {
         check_lights(scene)?;
         let other = |difference: String| Err(Error::OtherScene { difference });
@@ -197,12 +202,12 @@ impl SceneOnGpu {
                 ));
             }
         }
-        let ranges = &self.geometry.meshes;
-        let mut deforming = scene.meshes.iter().zip(ranges).filter(|(m, _)| m.deforms);
-        if deforming.any(|(mesh, range)| !range.holds(mesh)) {
-            return other("a mesh has another number of vertices or indices".to_owned());
+        let mut pairs = scene.meshes.iter().zip(&self.geometry.meshes).enumerate();
+        let otherwise = pairs.find_map(|(i, (mesh, range))| Some((i, range.differs_from(mesh)?)));
+        if let Some((i, how)) = otherwise {
+            return other(format!("mesh {i} {how}"));
         }
-        Ok(())
+        check_numbers(scene)
     }
 
     /// Takes over a new pose of the same scene; the pose so far becomes the previous one.
@@ -336,6 +341,7 @@ fn shadowed_bounds(scene: &Scene, meshes: &[MeshRange]) -> Aabb {
     (scene.instances.iter())
         .filter(|instance| scene.is_visible(instance))
         .filter(|instance| takes_part(&meshes[instance.mesh as usize]))
+        .filter(|instance| instance.bounds.is_valid())
         .fold(Aabb::EMPTY, |all, instance| all.union(instance.bounds))
 }
 

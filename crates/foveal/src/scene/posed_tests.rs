@@ -415,7 +415,7 @@ fn poses_of_other_scenes_are_refused() {
     let mut film = Film::new(&room, &settings);
     let before = at_rest(&mut film, &camera, &settings);
     type Change = fn(&mut Scene);
-    let changes: [(Change, &str); 6] = [
+    let changes: [(Change, &str); 8] = [
         (|s| s.instances.truncate(s.instances.len() - 1), "instances"),
         (|s| s.instances.extend_from_within(..1), "instances"),
         (|s| drop(s.objects.pop()), "objects"),
@@ -427,8 +427,14 @@ fn poses_of_other_scenes_are_refused() {
                 let again = s.meshes[0].vertices[0];
                 s.meshes[0].vertices.push(again);
             },
-            "vertices",
+            "mesh 0 has another number of vertices",
         ),
+        (
+            |s| s.meshes[1].indices.truncate(3),
+            "mesh 1 has another number of vertices or indices",
+        ),
+        // It may be an occluder.
+        (|s| s.meshes[1].deforms = true, "mesh 1 deforms"),
     ];
     for (change, named) in changes {
         let mut other = room.clone();

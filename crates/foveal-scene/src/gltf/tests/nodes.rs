@@ -236,3 +236,19 @@ fn what_lies_beyond_the_numbers_is_left_out() {
         }
     );
 }
+
+#[test]
+fn a_light_beyond_the_numbers_is_at_their_end() {
+    let mut file = File::with_triangle();
+    let lights = json!({ "lights": [{ "type": "point" }] });
+    file.json["extensions"] = json!({ "KHR_lights_punctual": lights });
+    let lamp = json!({ "KHR_lights_punctual": { "light": 0 } });
+    file.node()["scale"] = json!([3e38, 3e38, 1]);
+    file.node()["children"] = json!([1]);
+    file.push(
+        "nodes",
+        json!({ "translation": [10, -10, 2], "extensions": lamp }),
+    );
+    let position = file.load().lights[0].position;
+    assert_eq!(position, Vec3::new(f32::MAX, f32::MIN, 2.0));
+}
