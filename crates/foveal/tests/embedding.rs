@@ -301,7 +301,26 @@ fn cameras_that_make_no_sense_are_refused() {
             camera.world_from_view *= by;
             camera
         });
-        for camera in [&wrong[..], &placed, &[camera(4.0, f32::NAN)]].concat() {
+        // Each number is sound by itself.
+        let seen = |projection, x| {
+            let mut camera = camera(4.0, x);
+            camera.projection = projection;
+            camera
+        };
+        let (fov_y_rad, near_m) = (1e-40, 0.1);
+        let endless = foveal_scene::Projection::Orthographic {
+            height_m: 4.0,
+            near_m: f32::MIN,
+            far_m: f32::MAX,
+        };
+        let narrow = |fov_y_rad| foveal_scene::Projection::Perspective { fov_y_rad, near_m };
+        let beyond = [
+            seen(narrow(fov_y_rad), 0.0),
+            seen(narrow(0.5), f32::MAX),
+            seen(endless, 0.0),
+            camera(1e-40, 0.0),
+        ];
+        for camera in [&wrong[..], &placed, &beyond, &[camera(4.0, f32::NAN)]].concat() {
             let error = renderer.render(&Frame::new(&camera)).await.unwrap_err();
             assert!(
                 matches!(error, Error::Setting { name: "camera", .. }),

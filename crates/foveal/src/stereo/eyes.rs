@@ -126,15 +126,20 @@ fn check(settings: &Settings, camera: &Camera) -> Result<(), Error> {
                 let value = format!("a view of {height_m} m in height");
                 return wrong("camera", value, "above 0 m");
             }
-            if !(near_m < far_m && near_m.is_finite() && far_m.is_finite()) {
+            if !(near_m < far_m && (far_m - near_m).is_finite()) {
                 let value = format!("near plane at {near_m} m, far plane at {far_m} m");
-                return wrong("camera", value, "near before far, both finite");
+                return wrong("camera", value, "near before far, a finite way apart");
             }
             if settings.is_stereo() {
                 let value = "on with an orthographic camera".to_owned();
                 return wrong("stereo", value, "off: two eyes need a perspective");
             }
         }
+    }
+    let aspect = settings.picture.width as f32 / settings.picture.height as f32;
+    if !camera.clip_from_world(aspect).is_finite() {
+        let value = format!("{:?}, placed by {place}", camera.projection);
+        return wrong("camera", value, "one whose matrix to clip space is finite");
     }
     Ok(())
 }
