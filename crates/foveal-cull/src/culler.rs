@@ -280,7 +280,7 @@ impl Culler {
         let isa = self.instruction_set;
         let skipped = core::sync::atomic::AtomicU64::new(0);
         let task = |i: usize| {
-            let job = jobs[i].lock().ok().and_then(|mut j| j.take());
+            let job = jobs.get(i).and_then(|job| job.lock().ok()?.take());
             if let Some((band, scratch, drawn)) = job {
                 let left_out = isa.run(Draw {
                     set,

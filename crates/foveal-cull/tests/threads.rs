@@ -149,6 +149,15 @@ fn a_job_system_behind_a_closure_draws_the_same_in_whatever_order_it_runs_tasks(
         expected
     );
     assert!(runs.load(Ordering::Relaxed) > 0);
+    // Batches of four, the last one in full.
+    let in_batches = ThreadsFn::new(5, |tasks, task| {
+        (0..tasks.next_multiple_of(4)).for_each(task);
+        task(usize::MAX);
+    });
+    assert_eq!(
+        answers(&mut culler, &view, &set, &scene, &in_batches),
+        expected
+    );
     let spawning = ThreadsFn::new(3, |tasks, task| {
         std::thread::scope(|scope| {
             (0..tasks).for_each(|i| drop(scope.spawn(move || task(i))));

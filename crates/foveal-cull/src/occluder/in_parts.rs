@@ -4,8 +4,8 @@ use crate::threads::Threads;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// What `make` gives for every part below `parts`, in their order. Threads that run a task twice, or
-/// not at all, change nothing, as long as `make` gives the same each time.
+/// What `make` gives for every part below `parts`, in their order. Threads that run a task twice, not
+/// at all, or beyond the last one change nothing, as long as `make` gives the same each time.
 pub(super) fn in_parts<T: Send>(
     threads: &dyn Threads,
     parts: usize,
@@ -17,7 +17,7 @@ pub(super) fn in_parts<T: Send>(
     let made: Vec<Mutex<Option<T>>> = (0..parts).map(|_| Mutex::new(None)).collect();
     threads.run(parts, &|i| {
         // Held while the part is made: who comes second waits, and finds it.
-        if let Ok(mut part) = made[i].lock() {
+        if let Some(Ok(mut part)) = made.get(i).map(Mutex::lock) {
             part.get_or_insert_with(|| make(i));
         }
     });
@@ -40,7 +40,8 @@ pub(super) fn in_parts_of<P: Send, T: Send>(
 }
 
 /// Hands what `make` gives for every part below `parts` to `take`, in their order and as soon as the
-/// parts before are there, so that few wait. Threads may run a task twice, or not at all.
+/// parts before are there, so that few wait. Threads may run a task twice, not at
+/// all, or beyond the last one.
 pub(super) fn in_order<T: Send>(
     threads: &dyn Threads,
     parts: usize,
@@ -57,6 +58,9 @@ pub(super) fn in_order<T: Send>(
         take,
     });
     threads.run(parts, &|i| {
+        if i >= parts {
+            return;
+        }
         let part = make(i);
         if let Ok(mut line) = line.lock() {
             line.give(i, part);
@@ -125,5 +129,10 @@ mod tests {
         assert!(bake(&at_once) == one, "twice at once");
         let never = ThreadsFn::new(4, |_, _| ());
         assert!(bake(&never) == one, "never");
+        let beyond = ThreadsFn::new(4, |tasks, task| {
+            (0..tasks + 5).rev().for_each(task);
+            task(usize::MAX);
+        });
+        assert!(bake(&beyond) == one, "beyond the last");
     }
 }

@@ -116,7 +116,7 @@ impl FrameScratch {
             (rows, first, first_group) = (after, end, last_groups);
         }
         let task = |i: usize| {
-            let job = jobs[i].lock().ok().and_then(|mut j| j.take());
+            let job = jobs.get(i).and_then(|job| job.lock().ok()?.take());
             if let Some(select) = job {
                 instruction_set.run(select);
             }

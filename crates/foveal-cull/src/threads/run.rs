@@ -11,7 +11,7 @@ pub trait Threads: Sync {
     fn count(&self) -> usize;
     /// Calls `task(i)` once for every `i` below `tasks`, in any order and on any threads, and
     /// returns when all are done. While a frame is rasterized, a task that is left out makes more
-    /// visible and nothing hidden.
+    /// visible and nothing hidden. Numbers from `tasks` on, as of whole batches, do nothing.
     fn run(&self, tasks: usize, task: &(dyn Fn(usize) + Sync));
     /// Announces that there will be work soon, for threads that sleep. Returns at once, and may do
     /// nothing.
