@@ -86,7 +86,8 @@ impl PresentPass {
 /// into any other the renderer writes sRGB values.
 #[derive(Clone, Copy, Debug)]
 pub struct Target<'a> {
-    /// One layer of one mip of a texture with [`wgpu::TextureUsages::RENDER_ATTACHMENT`].
+    /// One layer of one mip of a texture with [`wgpu::TextureUsages::RENDER_ATTACHMENT`], of the
+    /// renderer's own device: wgpu panics where it gets a view of another instance.
     pub view: &'a wgpu::TextureView,
     /// The format of the view.
     pub format: wgpu::TextureFormat,

@@ -23,15 +23,19 @@ impl Grid {
     fn at(&self, x: u32, y: u32) -> u8 {
         self.cells[(y * self.width + x) as usize]
     }
+
+    fn holds(&self, x: u32, y: u32) -> bool {
+        x < self.width && y < self.height
+    }
 }
 
 impl MinPyramid {
     /// Builds the pyramid over `requests`, rows of `width` (at least 1) levels; requests above
-    /// `coarsest` count as `coarsest`. With `balance`, neighbouring blocks differ by one level at
-    /// most.
+    /// `coarsest`, which is at most 15, count as `coarsest`. With `balance`, neighbouring blocks differ
+    /// by one level at most.
     #[must_use]
     pub fn new(width: u32, requests: &[u8], coarsest: u8, balance: bool) -> Self {
-        let width = width.max(1);
+        let (width, coarsest) = (width.max(1), coarsest.min(LEVEL));
         let cells = requests
             .iter()
             .map(|&w| (w & LEVEL).min(coarsest) | w & EDGE)
@@ -54,33 +58,38 @@ impl MinPyramid {
         self.levels.len() as u8 - 1
     }
 
+    fn level(&self, level: u8) -> Option<&Grid> {
+        self.levels.get(usize::from(level))
+    }
+
     /// Blocks across and down at a level; those at the right and the bottom may reach beyond the
-    /// picture.
+    /// picture. None beyond the coarsest level.
     #[must_use]
     pub fn size(&self, level: u8) -> (u32, u32) {
-        let grid = &self.levels[usize::from(level)];
-        (grid.width, grid.height)
+        self.level(level)
+            .map_or((0, 0), |grid| (grid.width, grid.height))
     }
 
     /// The cells of a level as the passes write them, row by row.
     #[must_use]
     pub fn cells(&self, level: u8) -> &[u8] {
-        &self.levels[usize::from(level)].cells
+        self.level(level).map_or(&[], |grid| &grid.cells)
     }
 
     /// Whether a block is allowed at its level.
     fn allows(&self, level: u8, x: u32, y: u32) -> bool {
-        self.levels[usize::from(level)].at(x, y) & LEVEL >= level
+        self.level(level)
+            .is_some_and(|grid| grid.holds(x, y) && grid.at(x, y) & LEVEL >= level)
     }
 
-    /// Whether a block is a tile of the tiling.
+    /// Whether a block is a tile of the tiling; false where there is no such block.
     #[must_use]
     pub fn owns(&self, level: u8, x: u32, y: u32) -> bool {
         self.allows(level, x, y)
             && (level == self.coarsest() || !self.allows(level + 1, x / 2, y / 2))
     }
 
-    /// The level of the tile that holds a pixel.
+    /// The level of the tile that holds a pixel; 0 where none does.
     #[must_use]
     pub fn owner_level(&self, x: u32, y: u32) -> u8 {
         let mut level = 0;
@@ -214,6 +223,27 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn there_is_nothing_beyond_the_picture_and_the_coarsest_level() {
+        let deep = MinPyramid::new(3, &[255; 6], u8::MAX, true);
+        assert_eq!(deep.coarsest(), 15);
+        let pyramid = MinPyramid::new(3, &[8; 6], 2, false);
+        assert_eq!((pyramid.coarsest(), pyramid.owner_level(2, 1)), (2, 2));
+        for level in [3, u8::MAX] {
+            assert_eq!(
+                (pyramid.size(level), pyramid.cells(level)),
+                ((0, 0), &[][..])
+            );
+            assert!(!pyramid.owns(level, 0, 0));
+        }
+        for (x, y) in [(3, 0), (0, 2), (u32::MAX, u32::MAX)] {
+            assert!(!pyramid.owns(0, x, y) && !pyramid.owns(2, x, y));
+        }
+        assert_eq!(pyramid.owner_level(u32::MAX, 9), 0);
+        let none = MinPyramid::new(0, &[], 8, true);
+        assert_eq!((none.size(8), none.owner_level(0, 0)), ((1, 0), 0));
     }
 
     #[test]

@@ -72,6 +72,6 @@ impl EyeLayout {
 
     /// Pixels of all eyes' pictures.
     pub(crate) fn pixels(&self) -> u64 {
-        u64::from(self.eyes) * u64::from(self.width) * u64::from(self.height)
+        (u64::from(self.width) * u64::from(self.height)).saturating_mul(self.eyes.into())
     }
 }

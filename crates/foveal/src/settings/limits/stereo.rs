@@ -37,7 +37,9 @@ impl Settings {
     pub fn picture_size(&self) -> (u32, u32) {
         match self.stereo.output {
             _ if !self.is_stereo() => (self.picture.width, self.picture.height),
-            Output::SideBySide | Output::Headset => (2 * self.picture.width, self.picture.height),
+            Output::SideBySide | Output::Headset => {
+                (self.picture.width.saturating_mul(2), self.picture.height)
+            }
             Output::Flat | Output::SideBySideHalf => (self.picture.width, self.picture.height),
             Output::Anaglyph | Output::AnaglyphDubois => (self.picture.width, self.picture.height),
         }
@@ -140,6 +142,18 @@ mod tests {
         assert_eq!(settings.drawn_pixels(), 160 * 90);
         settings.stereo.mode = Stereo::Instanced;
         assert_eq!(settings.drawn_pixels(), 2 * 160 * 90);
+    }
+
+    #[test]
+    fn sizes_of_pictures_that_no_device_has_are_refused_and_not_computed_with() {
+        let huge = Settings::default().with(|s| {
+            (s.picture.width, s.picture.height) = (u32::MAX, u32::MAX);
+            s.stereo.mode = Stereo::Instanced;
+            s.stereo.output = Output::SideBySide;
+        });
+        assert_eq!(huge.picture_size(), (u32::MAX, u32::MAX));
+        assert_eq!(huge.drawn_pixels(), u64::MAX);
+        assert!(message(&huge).contains("the picture's width"));
     }
 
     #[test]
