@@ -6,10 +6,8 @@ use crate::sensitivity::{SensitivityTable, transient_ratio};
 
 /// Peak frequency of the levels below the first, by that of the first: the kernel's.
 const BAND_PEAK: f32 = 0.3228;
-/// Cycles per degree; the level that falls below it and all after it are left out.
-const LOWEST_FREQUENCY: f32 = 0.25;
-/// Sides in pixels below which a level is not divided further.
-const SMALLEST_SIDE: usize = 2;
+/// Cycles per degree; the first level that is not above is the last.
+const LAST_FREQUENCY: f32 = 0.5;
 
 /// A level for one size of picture, one display and one gaze.
 #[derive(Clone, Debug)]
@@ -36,9 +34,11 @@ impl Level {
         let (mut width, mut height) = (width, height);
         let mut frequency = pixels_per_degree / 2.0;
         let mut gain = 0.5;
-        while (levels.is_empty() || frequency >= LOWEST_FREQUENCY)
-            && width.min(height) >= SMALLEST_SIDE
-        {
+        // Measured of the published metric: a picture of 16 pixels has three, one of 15 two.
+        let most = width.min(height).max(4).ilog2() as usize - 1;
+        let mut is_last = false;
+        while !is_last && levels.len() < most {
+            is_last = frequency <= LAST_FREQUENCY;
             let scale = geometry.ln_frequency_scale(width, height);
             levels.push(Self::new(frequency, gain, width, &scale));
             frequency *= if levels.len() == 1 { BAND_PEAK } else { 0.5 };
@@ -87,11 +87,17 @@ mod tests {
     }
 
     #[test]
-    fn levels_end_at_a_quarter_cycle_per_degree() {
-        // 19.3, 21.8 and 5.4 pixels per degree.
+    fn levels_end_at_half_a_cycle_per_degree_or_with_the_pixels() {
+        // 19.3, 21.8, 5.4, 1.4 and 0.7 pixels per degree.
         assert_eq!(count(&Display::DEGREES_60, 1280, 720), 5);
         assert_eq!(count(&Display::HEADSET, 2560, 1440), 5);
         assert_eq!(count(&Display::HEADSET, 640, 360), 3);
+        assert_eq!(count(&Display::HEADSET, 160, 90), 2);
+        assert_eq!(count(&Display::HEADSET, 80, 45), 1);
+        let narrow = Display::parse("5").unwrap();
+        assert_eq!(count(&narrow, 64, 64), 5);
+        assert_eq!(count(&narrow, 64, 31), 3);
+        assert_eq!(count(&narrow, 64, 15), 2);
         assert_eq!(count(&Display::MONITOR_24, 4, 4), 1);
     }
 }

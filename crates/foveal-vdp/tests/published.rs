@@ -54,6 +54,18 @@ fn rows() -> Vec<Row> {
             });
         }
     }
+    for (size, display, scene, distortion, jod) in SMALL {
+        let gaze = (0.5, 0.5);
+        rows.push(Row {
+            reference: Clip::sized(size, scene, None, gaze),
+            test: Clip::sized(size, scene, Some(distortion), gaze),
+            display,
+            gaze,
+            frames_per_second: 30.0,
+            jod,
+            flicker: None,
+        });
+    }
     let mut flickers = FLICKER.iter();
     let views = [
         ("h60", (0.5, 0.5), 30.0),
@@ -83,7 +95,7 @@ fn metric(row: &Row) -> Metric {
         x: row.gaze.0,
         y: row.gaze.1,
     };
-    Metric::new(&Display::named(row.display).unwrap(), width, height, gaze).unwrap()
+    Metric::new(&Display::parse(row.display).unwrap(), width, height, gaze).unwrap()
 }
 
 /// JOD and flicker.

@@ -25,14 +25,28 @@ impl Clip {
     /// A scene's picture, as it is or distorted away from the gaze.
     pub(crate) fn picture(scene: usize, distortion: Option<usize>, gaze: (f32, f32)) -> Self {
         // Even and odd heights, and more pixels for one scene.
-        let (width, height) = [(480, 270), (512, 288), (480, 270), (400, 225), (960, 540)][scene];
+        let size = [(480, 270), (512, 288), (480, 270), (400, 225), (960, 540)][scene];
+        let clip = Self::sized(size, scene, distortion, gaze);
+        Self {
+            name: format!("p{scene}-{}", name_of(distortion)),
+            ..clip
+        }
+    }
+
+    /// The same with another number of pixels.
+    pub(crate) fn sized(
+        (width, height): (usize, usize),
+        scene: usize,
+        distortion: Option<usize>,
+        gaze: (f32, f32),
+    ) -> Self {
         let frame = Frame::draw(width, height, |x, y| scene_colour(scene, x, y, 0));
-        let (name, frame) = match distortion {
-            None => ("ref".to_owned(), frame),
-            Some(kind) => (kind.to_string(), frame.distorted(kind, gaze)),
+        let frame = match distortion {
+            None => frame,
+            Some(kind) => frame.distorted(kind, gaze),
         };
         Self {
-            name: format!("p{scene}-{name}"),
+            name: format!("s{scene}-{width}x{height}-{}", name_of(distortion)),
             frames: vec![frame],
         }
     }
@@ -53,13 +67,14 @@ impl Clip {
             Some(_) => draw(time).map(|c, _| c as i32 * (100 + 5 * (time as i32 % 3)) / 100),
         });
         Self {
-            name: format!(
-                "v{scene}-{}",
-                distortion.map_or("ref".to_owned(), |kind| kind.to_string())
-            ),
+            name: format!("v{scene}-{}", name_of(distortion)),
             frames: frames.collect(),
         }
     }
+}
+
+fn name_of(distortion: Option<usize>) -> String {
+    distortion.map_or("ref".to_owned(), |kind| kind.to_string())
 }
 
 impl Frame {
