@@ -56,6 +56,27 @@ pub enum Finding {
     Slower,
 }
 
+impl Finding {
+    /// What it means that this interval holds the true ratio; `None` where there are too few pairs
+    /// for one.
+    ///
+    /// ```
+    /// use foveal_measure::Finding;
+    /// assert_eq!(Finding::of(Some([1.1, 1.3])), Finding::Faster);
+    /// assert_eq!(Finding::of(Some([1.01, 1.3])), Finding::NoDifference);
+    /// assert_eq!(Finding::of(None), Finding::TooFew);
+    /// ```
+    #[must_use]
+    pub fn of(interval: Option<[f64; 2]>) -> Self {
+        match interval {
+            None => Self::TooFew,
+            Some([low, _]) if low > 1.0 + MARGIN => Self::Faster,
+            Some([_, high]) if high < 1.0 / (1.0 + MARGIN) => Self::Slower,
+            Some(_) => Self::NoDifference,
+        }
+    }
+}
+
 /// Two sides that drew the same frames in turn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
@@ -119,12 +140,7 @@ impl Comparison {
             ratio: ratio.exp(),
             interval,
             pairs: pairs.len(),
-            finding: match interval {
-                None => Finding::TooFew,
-                Some([low, _]) if low > 1.0 + MARGIN => Finding::Faster,
-                Some([_, high]) if high < 1.0 / (1.0 + MARGIN) => Finding::Slower,
-                Some(_) => Finding::NoDifference,
-            },
+            finding: Finding::of(interval),
         })
     }
 

@@ -5,10 +5,11 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 use super::bench::Bench;
-use foveal_measure::median;
+use foveal_measure::{Finding, median};
 
 /// A row per row of the first pass. Numbers that the passes disagree about become their median;
-/// `spread` holds the least and the largest of each.
+/// `spread` holds the least and the largest of each. What was found is what the medians of the
+/// interval's ends say.
 pub(super) fn passes(bench: &Bench, passes: &[Vec<Value>]) -> Value {
     let Some(first) = passes.first() else {
         return json!([]);
@@ -46,9 +47,19 @@ pub(super) fn passes(bench: &Bench, passes: &[Vec<Value>]) -> Value {
             }
         }
         merged.insert("spread".to_owned(), spread.into());
+        if let (Some(finding), Some([low, high])) = (merged.get("finding"), interval(&merged)) {
+            let of_all = Finding::of(low.as_f64().zip(high.as_f64()).map(<[f64; 2]>::from));
+            let of_all = serde_json::to_value(of_all).unwrap_or_else(|_| finding.clone());
+            merged.insert("finding".to_owned(), of_all);
+        }
         merged.into()
     });
     rows.collect::<Vec<Value>>().into()
+}
+
+/// The ends of a ratio's interval, which a finding is of.
+fn interval(row: &Map<String, Value>) -> Option<[&Value; 2]> {
+    Some([row.get("frame_ratio_low")?, row.get("frame_ratio_high")?])
 }
 
 /// «smooth, compute»

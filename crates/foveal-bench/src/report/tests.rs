@@ -216,6 +216,38 @@ fn passes_become_their_median_and_their_spread() {
 }
 
 #[test]
+fn what_was_found_is_what_the_interval_of_all_passes_says() {
+    let row = |finding: &str, low: f64, high: f64| {
+        let row = json!({ "finding": finding, "frame_ratio_low": low, "frame_ratio_high": high });
+        vec![row]
+    };
+    let passes = [
+        row("no-difference", 0.9, 1.5),
+        row("faster", 1.2, 1.8),
+        row("faster", 1.3, 1.9),
+    ];
+    assert_eq!(
+        merge::passes(&plan::BENCHES[4], &passes)[0]["finding"],
+        "faster"
+    );
+    assert_eq!(
+        merge::passes(&plan::BENCHES[4], &passes[..2])[0]["finding"],
+        "faster"
+    );
+    let passes = [row("slower", 0.2, 0.3), row("no-difference", 0.3, 4.0)];
+    assert_eq!(
+        merge::passes(&plan::BENCHES[4], &passes)[0]["finding"],
+        "no-difference"
+    );
+    let mut few = row("too-few", 0.0, 0.0);
+    few[0]["frame_ratio_low"] = Value::Null;
+    assert_eq!(
+        merge::passes(&plan::BENCHES[4], &[few])[0]["finding"],
+        "too-few"
+    );
+}
+
+#[test]
 fn the_markdown_has_a_file_per_measured_bench_and_says_what_was_measured() {
     let mut report = report();
     report["of"] = "commit abc1234, 2026-11-22".into();
