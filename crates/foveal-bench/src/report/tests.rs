@@ -6,6 +6,7 @@ use maud::html;
 
 use super::html::rounded;
 use super::{csv, markdown, merge, page, pictures, plan, published};
+use crate::stereo::SOURCE_RATIOS;
 
 /// A report with figures that occur nowhere else.
 fn report() -> Value {
@@ -245,6 +246,15 @@ fn what_was_found_is_what_the_interval_of_all_passes_says() {
         merge::passes(&plan::BENCHES[4], &[few])[0]["finding"],
         "too-few"
     );
+}
+
+#[test]
+fn the_page_has_the_ratios_of_the_source_that_the_bench_has() {
+    let published = published::of("stereo");
+    for (row, (_, _, cpu, gpu)) in SOURCE_RATIOS.into_iter().enumerate() {
+        let [found_cpu, found_gpu] = [1, 2].map(|column| &published["rows"][row][column]);
+        assert_eq!((found_cpu, found_gpu), (&cpu.into(), &gpu.into()));
+    }
 }
 
 #[test]
