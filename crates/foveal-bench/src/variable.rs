@@ -142,6 +142,8 @@ fn strip_textures(scene: &mut Scene) {
     for material in &mut scene.materials {
         material.base_color_texture = None;
         material.metallic_roughness_texture = None;
+        material.specular_texture = None;
+        material.specular_color_texture = None;
         material.normal_texture = None;
         material.occlusion_texture = None;
         material.emissive_texture = None;
@@ -345,4 +347,34 @@ fn summary(report: &Report) -> String {
         )
     });
     about + &text(&lines)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use foveal_scene::{Material, TextureRef};
+
+    #[test]
+    fn plain_materials_have_no_texture_that_rates_see() {
+        let texture = Some(TextureRef {
+            texture: 0,
+            uv_set: 0,
+            uv_transform: glam::Mat3::IDENTITY,
+        });
+        let mut scene = Scene {
+            materials: vec![Material {
+                base_color_texture: texture,
+                metallic_roughness_texture: texture,
+                specular_texture: texture,
+                specular_color_texture: texture,
+                normal_texture: texture,
+                occlusion_texture: texture,
+                emissive_texture: texture,
+                ..Material::default()
+            }],
+            ..Scene::default()
+        };
+        strip_textures(&mut scene);
+        assert_eq!(scene.materials, [Material::default()]);
+    }
 }
