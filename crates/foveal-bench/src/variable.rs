@@ -44,7 +44,7 @@ pub struct Args {
     contrast_threshold: Vec<f32>,
 
     /// Sideways movement of the camera per frame in metres
-    #[arg(long, value_name = "M", default_value_t = 0.01)]
+    #[arg(long, value_name = "M", default_value_t = 0.01, value_parser = values::finite)]
     step: f32,
 
     /// Measured frames, after those that warm up; figures are their medians
@@ -352,7 +352,24 @@ fn summary(report: &Report) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::Parser;
     use foveal_scene::{Material, TextureRef};
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    #[test]
+    fn a_step_is_a_number() {
+        let step = |text: &str| {
+            let line = Line::try_parse_from(["variable", "--step", text]);
+            line.ok().map(|line| line.args.step)
+        };
+        assert_eq!(step("0.5"), Some(0.5));
+        assert_eq!([step("nan"), step("inf")], [None; 2]);
+    }
 
     #[test]
     fn plain_materials_have_no_texture_that_rates_see() {
