@@ -12,7 +12,7 @@ use pollster::block_on;
 use serde::Serialize;
 
 use super::subject::{Header, Subject, SubjectArgs, timed_renderer};
-use super::table::{jod_text, name_of, number_text, passes_ms, text};
+use super::table::{jod_text, name_of, number_text, passes_ms, ratio_text, text};
 use foveal_host::difference::Nearness;
 use foveal_host::drawing::draw_with_room;
 use foveal_host::picture::Picture;
@@ -405,10 +405,7 @@ fn summary(report: &Report) -> String {
             number_text(row.gbuffer_ms, 2),
             number_text(row.shade_ms, 2),
             format!("{:.1}", row.frame_ms),
-            match row.finding {
-                Finding::NoDifference => format!("~ {:.3}", row.frame_ratio),
-                _ => format!("{:.3}", row.frame_ratio),
-            },
+            ratio_text(row.frame_ratio, row.finding, 3),
             number_text(row.shade_ratio, 3),
             format!("{:.4}", row.flip_to_ssaa),
             number_text(row.flip_to_reference, 4),

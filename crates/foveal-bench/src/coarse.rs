@@ -17,7 +17,7 @@ use serde::Serialize;
 use side::{Side, fovea_differing, psnr};
 
 use super::subject::{Header, SubjectArgs, warn};
-use super::table::{jod_text, number_text, passes_ms, text};
+use super::table::{jod_text, number_text, passes_ms, ratio_text, text};
 use foveal_host::difference::Nearness;
 use foveal_host::values::VariantParser;
 use foveal_host::{scene_source, values};
@@ -311,7 +311,7 @@ fn measure(
 
 fn print(row: &Row) {
     foveal_host::console::note(&format!(
-        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: frame {:.1} -> {:.1} ms ({:.2}x), lighting {} -> {} ms ({}), materials {} -> {} ms, FLIP {:.4}, {} JOD, fovea {:.4}\n",
+        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: frame {:.1} -> {:.1} ms ({}x), lighting {} -> {} ms ({}), materials {} -> {} ms, FLIP {:.4}, {} JOD, fovea {:.4}\n",
         row.scene,
         row.width,
         row.height,
@@ -322,7 +322,7 @@ fn print(row: &Row) {
         row.shaded_fraction * 100.0,
         row.full_frame_ms,
         row.coarse_frame_ms,
-        row.frame_ratio,
+        ratio_text(row.frame_ratio, row.finding, 2),
         number_text(row.full_ms, 2),
         number_text(row.coarse_ms, 2),
         times_text(row.ratio),

@@ -9,7 +9,7 @@ use pollster::block_on;
 use serde::Serialize;
 
 use super::subject::{Header, Subject, SubjectArgs, WARM_UP, swayed, timed_renderer};
-use super::table::{name_of, text};
+use super::table::{name_of, ratio_text, text};
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 1;
@@ -153,17 +153,13 @@ fn summary(report: &Report) -> String {
     ];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
     for row in &report.rows {
-        let ratio = format!("{:.2}", row.frame_ratio);
         lines.push(vec![
             name_of(row.culling),
             row.objects_visible.to_string(),
             row.draws.to_string(),
             row.triangles.to_string(),
             format!("{:.1}", row.frame_ms),
-            match row.finding {
-                Finding::NoDifference => format!("~ {ratio}"),
-                _ => ratio,
-            },
+            ratio_text(row.frame_ratio, row.finding, 2),
         ]);
     }
     format!(

@@ -15,12 +15,11 @@ mod ways;
 use std::rc::Rc;
 
 use foveal::Settings;
-use foveal_measure::Finding;
 use foveal_vdp::{Gaze, Metric};
 use serde::Serialize;
 
 use super::subject::Header;
-use super::table::text;
+use super::table::{ratio_text, text};
 pub(crate) use args::Args;
 use args::OFF_GAZE;
 use commands::{Commands, MadeBy};
@@ -229,10 +228,7 @@ fn line(row: &Row) -> Vec<String> {
         row.video_jod.map_or_else(dash, jod),
         row.flicker.map_or_else(dash, jod),
         times.map_or_else(dash, |t| format!("{:.1}", t.frame_ms)),
-        times.map_or_else(dash, |t| match t.finding {
-            Finding::NoDifference => format!("~ {:.2}", t.frame_ratio),
-            _ => format!("{:.2}", t.frame_ratio),
-        }),
+        times.map_or_else(dash, |t| ratio_text(t.frame_ratio, t.finding, 2)),
     ]
 }
 

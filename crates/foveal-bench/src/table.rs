@@ -1,6 +1,6 @@
 //! Figures as columns of text.
 
-use foveal_measure::median;
+use foveal_measure::{Finding, median};
 use serde::Serialize;
 
 /// Lines of cells, each column as wide as its widest cell, numbers (all but the first column) to
@@ -30,6 +30,14 @@ pub(super) fn number_text(number: Option<f64>, digits: usize) -> String {
     number.map_or_else(|| "-".to_owned(), |number| format!("{number:.digits$}"))
 }
 
+/// A ratio with so many digits; `~` before one that is no difference, or of too few rounds to tell.
+pub(super) fn ratio_text(ratio: f64, finding: Finding, digits: usize) -> String {
+    match finding {
+        Finding::Faster | Finding::Slower => format!("{ratio:.digits$}"),
+        Finding::NoDifference | Finding::TooFew => format!("~ {ratio:.digits$}"),
+    }
+}
+
 /// A kebab-case name, as the settings file spells it.
 pub(super) fn name_of(value: impl Serialize) -> String {
     match serde_json::to_value(value) {
@@ -57,6 +65,16 @@ mod tests {
         assert_eq!(passes_ms(&[0.0; 3]), None);
         assert_eq!(number_text(passes_ms(&[1.0, 2.0, 3.0]), 1), "2.0");
         assert_eq!(number_text(None, 1), "-");
+    }
+
+    #[test]
+    fn a_ratio_that_says_nothing_is_marked() {
+        let text = |finding| ratio_text(2.184, finding, 2);
+        assert_eq!([text(Finding::Faster), text(Finding::Slower)], ["2.18"; 2]);
+        assert_eq!(
+            [text(Finding::TooFew), text(Finding::NoDifference)],
+            ["~ 2.18"; 2]
+        );
     }
 
     #[test]

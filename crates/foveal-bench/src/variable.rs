@@ -11,7 +11,7 @@ use pollster::block_on;
 use serde::Serialize;
 
 use super::subject::{SubjectArgs, lit, timed_renderer, warn};
-use super::table::{jod_text, name_of, number_text, passes_ms, text};
+use super::table::{jod_text, name_of, number_text, passes_ms, ratio_text, text};
 use foveal_host::difference::Nearness;
 use foveal_host::picture::Picture;
 use foveal_host::values;
@@ -302,7 +302,7 @@ fn line(row: &Row) -> Vec<String> {
         time(row.reproject_ms),
         time(row.saved_ms),
         time(row.net_ms),
-        format!("{:.2}", row.frame_ratio),
+        ratio_text(row.frame_ratio, row.finding, 2),
         number_text(row.ratio, 2),
         format!("{:.3}", row.shaded_fraction),
         format!("{:.4}", row.flip_mean),
