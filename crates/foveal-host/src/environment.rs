@@ -7,6 +7,7 @@ use std::sync::Mutex;
 use std::time::SystemTime;
 
 use anyhow::{Context, anyhow, bail, ensure};
+use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use foveal::{EnvironmentMap, EnvironmentSource, Settings};
 use image::codecs::hdr::HdrDecoder;
@@ -148,7 +149,21 @@ fn radiance(reader: impl Read) -> anyhow::Result<Rgb32FImage> {
 }
 
 fn open_exr(mut reader: impl BufRead + Seek) -> anyhow::Result<Rgb32FImage> {
-    for header in MetaData::read_from_buffered(&mut reader, false)?.headers {
+    let headers = MetaData::read_from_buffered(&mut reader, false)?.headers;
+    let has = |header: &Header, name: &str| header.channels.list.iter().any(|c| c.name.eq(name));
+    let has_colours = |header: &Header| ["R", "G", "B"].iter().all(|name| has(header, name));
+    if !headers
+        .iter()
+        .any(|header| !header.deep && has_colours(header))
+    {
+        let channels = headers.iter().flat_map(|header| &header.channels.list);
+        let names: Vec<String> = channels.map(|channel| channel.name.to_string()).collect();
+        bail!(
+            "its channels are {}, and R, G and B are wanted, not deep",
+            names.join(", ")
+        );
+    }
+    for header in headers {
         let shown = header.shared_attributes.display_window.size;
         let shown = [shown.width(), shown.height()];
         let [width, height] = shown.map(|side| u32::try_from(side).unwrap_or(u32::MAX));
@@ -284,6 +299,17 @@ mod tests {
         let huge = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 120000\n";
         let text = cause(huge);
         assert!(text.contains("limit") || text.contains("large"), "{text}");
+    }
+
+    #[test]
+    fn an_exr_picture_without_colours_is_refused_with_its_channels() {
+        let mut bytes = exr(16, 8);
+        // The channels are in the order of their names.
+        let name = b"\0B\0";
+        let at = bytes.windows(name.len()).position(|w| w == name).unwrap();
+        bytes[at + 1] = b'A';
+        let text = cause(&bytes);
+        assert!(text.contains("its channels are A, G, R"), "{text}");
     }
 
     #[test]
