@@ -27,7 +27,7 @@ use foveal_host::difference::{ErrorMap, pixels};
 use screen::Screen;
 use studio::{Shot, Studio};
 use times::{Timed, Times};
-use ways::WAYS;
+use ways::{Follows, WAYS};
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 1;
@@ -155,8 +155,10 @@ fn measure(
         let video = match args.frames() {
             0 => None,
             frames => {
-                let reference = studio.video(&full, frames, args.fps)?;
-                let shot = studio.video(&settings, frames, args.fps)?;
+                let length = (frames, args.fps);
+                let reference = studio.video(&full, true, length)?;
+                let is_shared = way.follows != Follows::GazeAndDisplay;
+                let shot = studio.video(&settings, is_shared, length)?;
                 Some(Seen::moving(&at_center, &reference, &shot, args.fps)?)
             }
         };

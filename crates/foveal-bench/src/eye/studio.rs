@@ -61,12 +61,13 @@ impl<'a> Studio<'a> {
         Ok(shot)
     }
 
-    /// A video along the path.
+    /// A video along the path. `is_shared`: other displays have the same, so that it is kept for
+    /// them; to keep all would take gigabytes.
     pub(super) fn video(
         &mut self,
         settings: &Settings,
-        frames: u32,
-        fps: f32,
+        is_shared: bool,
+        (frames, fps): (u32, f32),
     ) -> anyhow::Result<Rc<Shot>> {
         if let Some((_, shot)) = self.videos.iter().find(|(known, _)| known == settings) {
             return Ok(Rc::clone(shot));
@@ -74,7 +75,9 @@ impl<'a> Studio<'a> {
         let mut drawing = self.drawing(settings, &self.along)?;
         let moments: Vec<f32> = (0..frames).map(|frame| moment(frame, fps)).collect();
         let shot = Rc::new(shoot(&mut drawing, &moments)?);
-        self.videos.push((settings.clone(), Rc::clone(&shot)));
+        if is_shared {
+            self.videos.push((settings.clone(), Rc::clone(&shot)));
+        }
         Ok(shot)
     }
 
@@ -123,4 +126,30 @@ fn shoot(drawing: &mut Drawing, moments: &[f32]) -> anyhow::Result<Shot> {
 fn lit_fraction(stats: &FrameStats) -> f64 {
     let pixels = u64::from(stats.width) * u64::from(stats.height);
     stats.shaded_samples as f64 / pixels.max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use foveal_host::camera::CameraArgs;
+
+    use super::*;
+
+    #[test]
+    fn only_a_video_that_displays_share_is_kept() {
+        let scene = foveal_generate::cornell();
+        let view = Viewpoint::choose(&CameraArgs::default(), &scene, "cornell").unwrap();
+        let view = Rc::new(view);
+        let camera = view.at(&scene, 0.0);
+        let gpu = foveal_host::gpu::open(None).unwrap();
+        let subject = Subject { gpu, scene, camera };
+        let mut studio = Studio::new(&subject, Rc::clone(&view), view);
+        let settings = Settings::default().with(|s| {
+            s.picture.width = 16;
+            s.picture.height = 16;
+        });
+        for (is_shared, kept) in [(false, 0), (true, 1), (true, 1)] {
+            let shot = studio.video(&settings, is_shared, (2, 30.0)).unwrap();
+            assert_eq!((shot.pictures.len(), studio.videos.len()), (2, kept));
+        }
+    }
 }
