@@ -103,6 +103,19 @@ fn radiance_of_what_has_none_is_refused() {
 }
 
 #[test]
+fn a_picture_of_an_environment_that_is_not_read_is_named() {
+    let folder = folder();
+    let words = ["-o", "a.png", "--environment-image", "a.hdr"];
+    let said = |words: &[&str]| {
+        let words = [&["render", "cornell"], words, &SIZE].concat();
+        stderr(&succeed(folder.path(), &words))
+    };
+    let warning = "warning: --environment-image is not read: it is for --environment image";
+    assert!(said(&words).contains(warning));
+    assert!(!said(&words[..2]).contains(warning));
+}
+
+#[test]
 fn standard_output_takes_the_file_s_bytes() {
     let folder = folder();
     let here = folder.path();

@@ -86,6 +86,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
              not: neighbours may differ; --part keeps them together",
         );
     }
+    let reads_image = settings.lighting.environment == EnvironmentSource::Image;
+    if args.settings.gives("environment-image") && !reads_image && !args.quiet {
+        console::warn("--environment-image is not read: it is for --environment image");
+    }
 
     let mut load_ms = Vec::new();
     let (mut drawing, adapter) = prepare(args, &settings, &mut load_ms)?;
