@@ -51,6 +51,25 @@ fn files_beside_the_scene_are_read_with_decoded_names() {
 }
 
 #[test]
+fn files_of_pictures_count_as_files_of_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    write_scene(folder.path(), "tri%20angle.bin", "wood.png");
+    // More texels than any file may have, by half a megabyte that no packing makes smaller.
+    let mut number = 1u32;
+    let picture = image::GrayImage::from_fn(8192, 4096, |_, y| {
+        number = number.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        image::Luma([if y < 64 { (number >> 24) as u8 } else { 90 }])
+    });
+    picture.save(folder.path().join("wood.png")).unwrap();
+    let scene = load(&folder.path().join("scene.gltf"), &LoadOptions::default()).unwrap();
+    assert_eq!(
+        (scene.textures[0].width, scene.textures[0].height),
+        (8192, 4096)
+    );
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+#[test]
 fn files_outside_the_scenes_folder_need_permission() {
     let folder = tempfile::tempdir().unwrap();
     write_scene(folder.path(), "../tri%20angle.bin", "../wood.png");

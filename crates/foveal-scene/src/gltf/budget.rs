@@ -14,9 +14,11 @@ const FREE_BYTES: u64 = 160 << 20;
 
 /// The memory that a file of its size may ask for, and what is left of it.
 pub(crate) struct Budget {
-    input: u64,
-    allowed: u64,
+    input: AtomicU64,
+    allowed: AtomicU64,
     left: AtomicU64,
+    /// Bytes of memory per byte of files.
+    expansion: u64,
 }
 
 impl Budget {
@@ -24,15 +26,30 @@ impl Budget {
     pub(crate) fn new(input: u64, options: &LoadOptions) -> Self {
         let allowed = FREE_BYTES.saturating_add(input.saturating_mul(options.max_expansion));
         Self {
-            input,
-            allowed,
+            input: AtomicU64::new(input),
+            allowed: AtomicU64::new(allowed),
             left: AtomicU64::new(allowed),
+            expansion: options.max_expansion,
         }
+    }
+
+    /// Adds files that were read since, of `bytes` together.
+    pub(crate) fn add_files(&self, bytes: u64) {
+        let grow = |what: &AtomicU64, by: u64| {
+            what.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |before| {
+                Some(before.saturating_add(by))
+            })
+            .unwrap_or_else(|before| before)
+        };
+        let more = bytes.saturating_mul(self.expansion);
+        grow(&self.input, bytes);
+        grow(&self.allowed, more);
+        grow(&self.left, more);
     }
 
     /// Memory that the files may ask for in all.
     pub(crate) fn allowed(&self) -> u64 {
-        self.allowed
+        self.allowed.load(Ordering::Relaxed)
     }
 
     /// Memory that is left.
@@ -47,8 +64,9 @@ impl Budget {
             .fetch_update(Ordering::Relaxed, Ordering::Relaxed, rest)
             .map(|_| ())
             .map_err(|left| {
+                let (input, allowed) = (self.input.load(Ordering::Relaxed), self.allowed());
                 // What is left is news only where something has been taken that one can see.
-                let rest = if left < self.allowed / 10 * 9 {
+                let rest = if left < allowed / 10 * 9 {
                     format!(", of which {} are left", amount(left))
                 } else {
                     String::new()
@@ -58,8 +76,8 @@ impl Budget {
                     format!(
                         "wants {} for {what}; the limit for {} of files is {}{rest}",
                         amount(bytes),
-                        amount(self.input),
-                        amount(self.allowed)
+                        amount(input),
+                        amount(allowed)
                     ),
                 )
             })
@@ -83,6 +101,9 @@ mod tests {
             text.contains("wants 1 bytes for instances; the limit for 1 MB of files is 423.8 MB"),
             "{text}"
         );
+        budget.add_files(1);
+        assert!(budget.take(options.max_expansion, "textures").is_ok());
+        assert!(budget.take(1, "textures").is_err());
         assert!(Budget::new(u64::MAX, &options).take(u64::MAX, "").is_ok());
     }
 }

@@ -38,6 +38,11 @@ impl ImageDef {
         })
     }
 
+    /// Whether it is a file of its own.
+    pub(crate) fn is_file(&self) -> bool {
+        matches!(&self.source, ImageSource::Uri(uri) if !is_data(uri))
+    }
+
     /// The name that users see.
     pub(crate) fn label(&self, index: usize) -> String {
         self.name

@@ -7,6 +7,7 @@ use super::Resolver;
 use super::basis;
 use super::budget::Budget;
 use super::document::Document;
+use super::images::ImageDef;
 use super::pictures::{self, Picture, Promise};
 use super::reader::Reader;
 use super::wanted::{Key, Role, Wanted};
@@ -67,6 +68,11 @@ pub(crate) fn decode(
         read.map(|read| Kept { read, by }).collect::<Vec<_>>()
     });
     let sources = sources(wanted, kept.as_deref(), reader, resolver);
+    // Buffers were counted as they were read.
+    let files = sources.iter().filter(|source| source.is_file(document));
+    let files = files.filter_map(|source| source.encoded.as_ref().ok());
+    let bytes = files.map(|(bytes, _)| bytes.len() as u64).sum();
+    reader.buffers.budget.add_files(bytes);
     let plan = plan(&sources, document, options, &reader.buffers.budget, warn)?;
     let decoded = threads::map_few(options.parallel, plan.at_once, &sources, |source| {
         #[cfg(not(target_arch = "wasm32"))]
@@ -122,6 +128,12 @@ fn sources<'a>(
 }
 
 impl Source<'_> {
+    /// Whether the picture is a file of its own.
+    fn is_file(&self, document: &Document) -> bool {
+        let image = self.image.map(|image| &document.images[image as usize]);
+        image.is_some_and(ImageDef::is_file)
+    }
+
     fn place(&self, document: &Document) -> String {
         match self.image {
             Some(image) => {
