@@ -65,8 +65,8 @@ pub struct LoadOptions {
     pub max_instances: u64,
     /// Most triangles, lines and points, each counted once per instance.
     pub max_triangles: u64,
-    /// Bytes of memory that a file may ask for per byte of its own, beyond 160 MiB that any file
-    /// may have. Scenes stay far below the default; a file that goes beyond it was made to fill the
+    /// Bytes of memory that a file may ask for per byte of its own and of the files that it names,
+    /// beyond 160 MiB that any file may have. Scenes stay far below the default; a file that goes beyond it was made to fill the
     /// memory.
     pub max_expansion: u64,
 }

@@ -40,9 +40,8 @@ impl AmbientBinding {
         }
     }
 
-    fn resource(&self) -> Option<wgpu::BindingResource<'_>> {
-        let view = self.found.as_ref().unwrap_or(&self.none);
-        Some(wgpu::BindingResource::TextureView(view))
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::TextureView(self.found.as_ref().unwrap_or(&self.none))
     }
 }
 
@@ -80,7 +79,7 @@ impl FrameBindings {
         let environment = EnvironmentBinding::new(gpu, around);
         let ambient = AmbientBinding::new(gpu);
         let tables = (&instances, &drawn);
-        let around = (&environment, ambient.resource());
+        let around = (&environment, Some(ambient.resource()));
         let group = group(gpu, &layout, &frame, tables, around);
         Self {
             layout,
@@ -105,7 +104,7 @@ impl FrameBindings {
     /// The same group with another list of drawn instances.
     pub(crate) fn group_of(&self, gpu: &Gpu, drawn: &Table) -> wgpu::BindGroup {
         let tables = (&self.instances, drawn);
-        let around = (&self.environment, self.ambient.resource());
+        let around = (&self.environment, Some(self.ambient.resource()));
         group(gpu, &self.layout, &self.frame, tables, around)
     }
 
@@ -134,7 +133,7 @@ impl FrameBindings {
     pub(crate) fn with_environment(&self, gpu: &Gpu, around: ToBind<'_>) -> BoundEnvironment {
         let binding = EnvironmentBinding::new(gpu, around);
         let tables = (&self.instances, &self.drawn);
-        let around = (&binding, self.ambient.resource());
+        let around = (&binding, Some(self.ambient.resource()));
         let group = group(gpu, &self.layout, &self.frame, tables, around);
         BoundEnvironment { binding, group }
     }

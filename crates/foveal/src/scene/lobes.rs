@@ -175,15 +175,16 @@ mod tests {
 
     use super::*;
 
+    fn slot(texture: u32) -> Option<TextureRef> {
+        Some(TextureRef {
+            texture,
+            uv_set: 0,
+            uv_transform: Mat3::IDENTITY,
+        })
+    }
+
     #[test]
     fn places_share_what_is_bound_and_the_sixth_texture_is_left_out() {
-        let slot = |texture| {
-            Some(TextureRef {
-                texture,
-                uv_set: 0,
-                uv_transform: Mat3::IDENTITY,
-            })
-        };
         let material = Material {
             clearcoat: Some(Clearcoat {
                 factor: 1.0,
@@ -208,13 +209,6 @@ mod tests {
 
     #[test]
     fn the_reduced_renderer_binds_them_where_the_material_has_none() {
-        let slot = |texture| {
-            Some(TextureRef {
-                texture,
-                uv_set: 0,
-                uv_transform: Mat3::IDENTITY,
-            })
-        };
         let mut material = Material {
             base_color_texture: slot(0),
             specular_color_texture: slot(1),
