@@ -82,7 +82,7 @@ pub struct Args {
     import: ImportArgs,
 }
 
-/// Runs everything and writes the report.
+/// Runs everything and writes the report, anew after each bench.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     if args.scene == scene_source::STDIN {
         return usage("a report reads its scene many times, standard input only once; name a file");
@@ -108,6 +108,24 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let passes = if args.quick { 2 } else { 3 };
     let steps: usize = plan::BENCHES.iter().map(|b| b.passes(passes) + 1).sum();
     let progress = progress(args.quiet, steps as u64);
+    let adapter = match foveal_host::gpu::open(args.adapter.as_deref()) {
+        Ok(gpu) => serde_json::to_value(gpu.adapter_stats())?,
+        Err(error) => json!({ "name": format!("{error:#}") }),
+    };
+    let mut report = json!({
+        "schema": "foveal-report",
+        "schema_version": SCHEMA_VERSION,
+        "program_version": env!("CARGO_PKG_VERSION"),
+        "scene": args.scene,
+        "quick": args.quick,
+        "width": size.0,
+        "height": size.1,
+        "passes": passes,
+        "minutes": 0.0,
+        "machine": machine(),
+        "adapter": adapter,
+        "benches": [],
+    });
     let mut benches = Vec::new();
     let mut failures = Vec::new();
     for bench in plan::BENCHES {
@@ -118,46 +136,24 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         {
             failures.push(format!("{}: {cause}", bench.name));
         }
+        let was_skipped = measured["status"] == "skipped";
         benches.push(measured);
+        // The report of so far stays where this is interrupted.
+        if !was_skipped || benches.len() == plan::BENCHES.len() {
+            report["minutes"] = (start.elapsed().as_secs_f64() / 60.0).into();
+            report["benches"] = with_rest(args, size, &benches).into();
+            write(&args.report, &report)?;
+        }
     }
     progress.finish_and_clear();
-    let adapter = match foveal_host::gpu::open(args.adapter.as_deref()) {
-        Ok(gpu) => serde_json::to_value(gpu.adapter_stats())?,
-        Err(error) => json!({ "name": format!("{error:#}") }),
-    };
-    let report = json!({
-        "schema": "foveal-report",
-        "schema_version": SCHEMA_VERSION,
-        "program_version": env!("CARGO_PKG_VERSION"),
-        "scene": args.scene,
-        "quick": args.quick,
-        "width": size.0,
-        "height": size.1,
-        "passes": passes,
-        "minutes": start.elapsed().as_secs_f64() / 60.0,
-        "machine": machine(),
-        "adapter": adapter,
-        "benches": benches,
-    });
-    let write =
-        |name: &str, text: &str| atomic_file::write(&args.report.join(name), text.as_bytes());
-    // The pictures are in the page; the JSON names them.
-    let mut figures = report.clone();
-    pictures::strip(&mut figures);
-    write(
-        "report.json",
-        &(serde_json::to_string_pretty(&figures)? + "\n"),
-    )?;
     if let Some(folder) = &args.markdown {
         if let Some(of) = &args.of {
-            figures["of"] = of.as_str().into();
+            report["of"] = of.as_str().into();
         }
-        for (name, text) in markdown::of(&figures) {
+        for (name, text) in markdown::of(&report) {
             atomic_file::write(&folder.join(name), text.as_bytes())?;
         }
     }
-    write("report.csv", &csv::of(&figures)?)?;
-    write("report.html", &console::printable_lines(&page::of(&report)))?;
     console::print_result(&format!("{}\n", args.report.join("report.html").display()))?;
     if failures.is_empty() {
         Ok(())
@@ -167,6 +163,27 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
             failures.join("; ")
         )
     }
+}
+
+/// The benches that ran, and behind them those of the plan that have not.
+fn with_rest(args: &Args, size: (u32, u32), benches: &[Value]) -> Vec<Value> {
+    let rest = plan::BENCHES.iter().skip(benches.len());
+    let rest = rest.map(|bench| skipped(entry(args, bench, size).0, "not yet run"));
+    benches.iter().cloned().chain(rest).collect()
+}
+
+/// Writes the three files.
+fn write(folder: &Path, report: &Value) -> anyhow::Result<()> {
+    let write = |name: &str, text: &str| atomic_file::write(&folder.join(name), text.as_bytes());
+    // The pictures are in the page; the JSON names them.
+    let mut figures = report.clone();
+    pictures::strip(&mut figures);
+    write(
+        "report.json",
+        &(serde_json::to_string_pretty(&figures)? + "\n"),
+    )?;
+    write("report.csv", &csv::of(&figures)?)?;
+    write("report.html", &console::printable_lines(&page::of(report)))
 }
 
 /// On a terminal only.
@@ -197,18 +214,11 @@ pub fn planned_commands(scene: &str) -> Vec<Vec<String>> {
     plan::BENCHES.iter().map(words).collect()
 }
 
-/// One bench as the JSON shows it, whatever became of it.
-fn measure(
-    args: &Args,
-    bench: &Bench,
-    size: (u32, u32),
-    passes: usize,
-    progress: &ProgressBar,
-) -> Value {
-    let start = Instant::now();
+/// A bench as the JSON shows it before it has run, and the words of its command.
+fn entry(args: &Args, bench: &Bench, size: (u32, u32)) -> (Value, Vec<String>) {
     let (adapter, import) = (args.adapter.as_deref(), args.import.flags());
     let words = bench.words(&args.scene, size, args.quick, adapter, &import);
-    let mut result = json!({
+    let entry = json!({
         "name": bench.name,
         "title": bench.title,
         "about": bench.about,
@@ -219,11 +229,28 @@ fn measure(
         "rows": [],
         "pictures": [],
     });
+    (entry, words)
+}
+
+fn skipped(mut entry: Value, cause: &str) -> Value {
+    entry["status"] = "skipped".into();
+    entry["cause"] = cause.into();
+    entry
+}
+
+/// One bench as the JSON shows it, whatever became of it.
+fn measure(
+    args: &Args,
+    bench: &Bench,
+    size: (u32, u32),
+    passes: usize,
+    progress: &ProgressBar,
+) -> Value {
+    let start = Instant::now();
+    let (mut result, words) = entry(args, bench, size);
     if !args.only.is_empty() && !args.only.iter().any(|name| name == bench.name) {
-        result["status"] = "skipped".into();
-        result["cause"] = "not asked for".into();
         progress.inc(passes as u64 + 1);
-        return result;
+        return skipped(result, "not asked for");
     }
     let mut all = Vec::new();
     for _ in 0..passes {
@@ -242,7 +269,12 @@ fn measure(
     }
     result["rows"] = merge::passes(bench, &all);
     if !bench.pairs.is_empty() {
-        match pictures::draw(bench, (&args.scene, &args.import), size, adapter) {
+        match pictures::draw(
+            bench,
+            (&args.scene, &args.import),
+            size,
+            args.adapter.as_deref(),
+        ) {
             Ok(pictures) => result["pictures"] = pictures.into(),
             Err(error) => {
                 result["status"] = "failed".into();

@@ -116,6 +116,28 @@ fn a_picture_of_an_environment_that_is_not_read_is_named() {
 }
 
 #[test]
+fn a_picture_of_rates_that_is_not_read_is_named() {
+    let folder = folder();
+    let here = folder.path();
+    succeed(here, &render(&["-o", "rates.png"]));
+    let said = |words: &[&str]| {
+        let named = [
+            "render",
+            "cornell",
+            "-o",
+            "a.png",
+            "--rate-image",
+            "rates.png",
+        ];
+        let said = stderr(&succeed(here, &[&named, words, &SIZE].concat()));
+        said.contains("warning: --rate-image is not read")
+    };
+    assert!(said(&["--shading", "coarse"]));
+    assert!(said(&["--shading", "full", "--rate", "image"]));
+    assert!(!said(&["--shading", "coarse", "--rate", "image"]));
+}
+
+#[test]
 fn standard_output_takes_the_file_s_bytes() {
     let folder = folder();
     let here = folder.path();

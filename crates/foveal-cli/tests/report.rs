@@ -9,6 +9,8 @@ mod common;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
+use std::thread;
+use std::time::Duration;
 
 use common::{fail, folder, stdout, succeed};
 use serde_json::Value;
@@ -116,6 +118,44 @@ fn a_report_has_figures_pictures_and_what_was_left_out() {
     let page = fs::read_to_string(folder.path().join("diff.html")).unwrap();
     assert!(page.contains("<td>0.33</td><td class=\"slower\">slower</td>"));
     assert!(!page.contains("class=\"faster\""), "nothing became faster");
+}
+
+#[test]
+fn a_run_that_is_stopped_leaves_what_it_has_measured() {
+    let folder = folder();
+    let words = [
+        "bench",
+        "all",
+        "cornell",
+        "--quick",
+        "--size",
+        "96x64",
+        "--only",
+        "baseline,antialiasing",
+        "--report",
+        "r",
+        "--quiet",
+    ];
+    let mut run = common::spawn_in(folder.path(), &words);
+    let at = folder.path().join("r");
+    let page = at.join("report.html");
+    while !page.exists() && run.try_wait().unwrap().is_none() {
+        thread::sleep(Duration::from_millis(10));
+    }
+    run.kill().unwrap();
+    run.wait().unwrap();
+    let report = json(&at.join("report.json"));
+    assert_eq!(bench(&report, "baseline")["status"], "measured");
+    let waiting = bench(&report, "antialiasing");
+    assert_eq!(
+        (&waiting["status"], &waiting["cause"]),
+        (&"skipped".into(), &"not yet run".into())
+    );
+    assert!(
+        fs::read_to_string(page)
+            .unwrap()
+            .contains("skipped: not yet run")
+    );
 }
 
 #[test]

@@ -9,10 +9,7 @@ use crate::picture::Picture;
 
 /// The picture that the rate map comes from, where it comes from one.
 pub fn rate_image(settings: &Settings) -> anyhow::Result<Option<RateImage>> {
-    let second = settings.coarse.combine != RateCombine::First;
-    let used = settings.coarse.source == RateSource::Image
-        || second && settings.coarse.other_source == RateSource::Image;
-    if settings.shading.mode == Shading::Full || !used {
+    if !is_read(settings) {
         return Ok(None);
     }
     if settings.coarse.image_name.is_empty() {
@@ -32,4 +29,12 @@ pub fn rate_image(settings: &Settings) -> anyhow::Result<Option<RateImage>> {
         })
         .collect();
     Ok(RateImage::new(picture.width, picture.height, luma))
+}
+
+/// Whether frames with these settings take shading rates from a picture.
+pub fn is_read(settings: &Settings) -> bool {
+    let second = settings.coarse.combine != RateCombine::First;
+    let named = settings.coarse.source == RateSource::Image
+        || second && settings.coarse.other_source == RateSource::Image;
+    settings.shading.mode != Shading::Full && named
 }

@@ -26,7 +26,7 @@ use foveal_host::environment::environment;
 use foveal_host::linear_picture::{self, PictureFormat};
 use foveal_host::memory;
 use foveal_host::progress::progress_bar;
-use foveal_host::rate_image::rate_image;
+use foveal_host::rate_image::{self, rate_image};
 use foveal_host::video::{self, Video};
 use foveal_host::{atomic_file, console, gpu, scene_source};
 
@@ -86,9 +86,16 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
              not: neighbours may differ; --part keeps them together",
         );
     }
-    let reads_image = settings.lighting.environment == EnvironmentSource::Image;
-    if args.settings.gives("environment-image") && !reads_image && !args.quiet {
-        console::warn("--environment-image is not read: it is for --environment image");
+    if !args.quiet {
+        let reads = settings.lighting.environment == EnvironmentSource::Image;
+        if args.settings.gives("environment-image") && !reads {
+            console::warn("--environment-image is not read: it is for --environment image");
+        }
+        if args.settings.gives("rate-image") && !rate_image::is_read(&settings) {
+            console::warn(
+                "--rate-image is not read: it is for --rate image with a --shading that has rates",
+            );
+        }
     }
 
     let mut load_ms = Vec::new();
