@@ -340,7 +340,7 @@ fn lobes_lit_from_afar(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3
         return vec3f(0.0);
     }
     if SHADOWS != 0u {
-        a.irradiance *= directional_arriving(index, light, s.base, 0.0).part;
+        a.irradiance *= directional_arriving(index, light, s.base, PIXEL).part;
     }
     return lobes_reflected(s, v, left, a);
 }
@@ -352,7 +352,7 @@ fn lobes_lit_by(s: LobedSurface, v: vec3f, left: f32, index: u32, light: Light) 
         return vec3f(0.0);
     }
     if SHADOWS != 0u {
-        a.irradiance *= light_arriving(index, light, s.base, 0.0).part;
+        a.irradiance *= light_arriving(index, light, s.base, PIXEL).part;
     }
     return lobes_reflected(s, v, left, a);
 }

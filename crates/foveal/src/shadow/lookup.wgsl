@@ -144,27 +144,33 @@ struct ShadowPlace {
     at: vec2f,
     depth: f32,
     softness: f32,
-    // Change of depth along the surface's plane, from a texel to the next on the right and below.
-    slope: vec2f,
-    // Texels across and down from the place to the four that stand for the sample's block; 0: it
-    // stands for a pixel.
-    apart: f32,
+    // The same of the four pixels at the corners of the sample's block: texels across and down, depths,
+    // and whether they count, by 1.
+    corners_x: vec4f,
+    corners_y: vec4f,
+    corner_depths: vec4f,
+    corners_count: vec4f,
 }
 
-const UNSHADOWED: ShadowPlace = ShadowPlace(ShadowTile(vec2f(0.0), 0.0, false), vec2f(0.0), 0.0, 0.0, vec2f(0.0), 0.0);
+const UNSHADOWED: ShadowPlace = ShadowPlace(
+    ShadowTile(vec2f(0.0), 0.0, false),
+    vec2f(0.0),
+    0.0,
+    0.0,
+    vec4f(0.0),
+    vec4f(0.0),
+    vec4f(0.0),
+    vec4f(0.0),
+);
 
-// The largest `apart`: what is read lies within `SOFT_REACH` of the place (`shadow/records.rs`).
-const MOST_APART_TEXELS: f32 = 2.0;
-
-// `apart` of a block's width and a texel's, both in metres. Half the width reaches as far as the
-// sample's light is blended with that of the next ones.
-fn texels_apart(block_m: f32, texel_m: f32) -> f32 {
-    return select(0.0, clamp(0.5 * block_m / texel_m, 0.5, MOST_APART_TEXELS), block_m > 0.0);
+// How far along an axis a block's corners lie from its sample.
+fn corners_along(axis: vec3f, block: Block) -> vec4f {
+    return axis.x * block.x + axis.y * block.y + axis.z * block.z;
 }
 
 // Of a light that shines from a point: in a side of a cube around it, or, where its cone fits into
 // one tile, in that.
-fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, block_m: f32) -> ShadowPlace {
+fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, block: Block) -> ShadowPlace {
     let from_light = position - light.position;
     let side = cube_side(from_light);
     // Three sides' tiles; or a cone's one, three times, and its tangent, which of a cube is 0.
@@ -191,20 +197,25 @@ fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, bl
         return UNSHADOWED;
     }
     let softness = pyramid_softness(near, tangent, tile.side, max(-dot(normal, from_light), 0.0));
-    // Where n p = c is the plane, seen from the light, 1 / z = (n / c) (x / z, y / z, 1).
-    let n = vec2f(dot(across, normal), -dot(up, normal));
-    let c = min(dot(vec3f(dot(across, normal), dot(up, normal), dot(along, normal)), at), -1e-4);
-    let slope = n * (near * tangent / (c * (0.5 * tile.side - SHADOW_BORDER)));
-    let apart = texels_apart(block_m, texel_m);
-    return ShadowPlace(tile, pyramid_texel(at, tangent, tile.side), near / at.z, softness, slope, apart);
+    let z = at.z + corners_along(along, block);
+    let x = (at.x + corners_along(across, block)) / (z * tangent);
+    let y = (at.y + corners_along(up, block)) / (z * tangent);
+    let is_inside = (z > vec4f(near)) & (max(abs(x), abs(y)) <= vec4f(1.0));
+    let half_inner = 0.5 * tile.side - SHADOW_BORDER;
+    return ShadowPlace(
+        tile,
+        pyramid_texel(at, tangent, tile.side),
+        near / at.z,
+        softness,
+        0.5 * tile.side + half_inner * x,
+        0.5 * tile.side - half_inner * y,
+        near / z,
+        select(vec4f(0.0), block.counts, is_inside),
+    );
 }
 
-// Planes are taken to face the sun no less than by this cosine: where less of its light falls, its
-// shadows count little.
-const LEAST_SUN_COSINE: f32 = 0.1;
-
 // Of a directional light: in the finest cascade that holds the place.
-fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, block_m: f32) -> ShadowPlace {
+fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, block: Block) -> ShadowPlace {
     let axes = axes_along(light.direction);
     let cosine = -dot(normal, light.direction);
     let words = shadow_words(first);
@@ -232,33 +243,45 @@ fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, bloc
         let depth = (span.x - dot(light.direction, moved)) * span.y;
         // Metres between two depths, times the tangent of half the angle that the light fills.
         let softness = frame.sun_tangent / (span.y * texel_m);
-        let n = vec2f(dot(axes[0], normal), -dot(axes[1], normal));
-        let slope = -n * (span.y * texel_m / max(cosine, LEAST_SUN_COSINE));
-        let apart = texels_apart(block_m, texel_m);
-        return ShadowPlace(tile, 0.5 * tile.side + vec2f(at.x, -at.y), depth, softness, slope, apart);
+        let x = at.x + corners_along(axes[0], block) / texel_m;
+        let y = at.y + corners_along(axes[1], block) / texel_m;
+        let half_inner = vec4f(0.5 * tile.side - 1.0);
+        return ShadowPlace(
+            tile,
+            0.5 * tile.side + vec2f(at.x, -at.y),
+            depth,
+            softness,
+            0.5 * tile.side + x,
+            0.5 * tile.side - y,
+            depth - corners_along(light.direction, block) * span.y,
+            select(vec4f(0.0), block.counts, max(abs(x), abs(y)) <= half_inner),
+        );
     }
     return UNSHADOWED;
 }
 
 #ifdef LIGHT
-// Part of a light's rays that reach a sample's block: at four places, each blended between four
-// texels. A tap's depth follows the surface's plane where that comes nearer to the light, so that the
-// surface does not shade itself, and stays where it goes away: so no tap lies behind all surfaces that
-// are seen, as shadow/mask.rs expects of lookups.
-fn block_passing(place: ShadowPlace) -> f32 {
+// A comparison, blended between four texels.
+fn corner_passing(tile: ShadowTile, at: vec2f, depth: f32) -> f32 {
     let texel = 1.0 / f32(textureDimensions(shadow_atlas).x);
-    var sum = 0.0;
-    for (var i = 0u; i < 4u; i++) {
-        let away = place.apart * (vec2f(vec2u(i, i >> 1u) & vec2u(1u)) * 2.0 - 1.0);
-        let inside = clamp(place.at + away, vec2f(1.0), vec2f(place.tile.side - 1.0)) - 0.5;
-        let first = min(floor(inside), vec2f(place.tile.side - 2.0));
-        let f = inside - first;
-        let depth = place.depth + max(dot(place.slope, away), 0.0);
-        // x lower left, y lower right, z upper right, w upper left.
-        let q = textureGatherCompare(shadow_atlas, shadow_sampler, (place.tile.corner + first + 1.0) * texel, depth);
-        sum += mix(mix(q.w, q.z, f.x), mix(q.x, q.y, f.x), f.y);
-    }
-    return 0.25 * sum;
+    let inside = clamp(at, vec2f(1.0), vec2f(tile.side - 1.0)) - 0.5;
+    let first = min(floor(inside), vec2f(tile.side - 2.0));
+    let f = inside - first;
+    // x lower left, y lower right, z upper right, w upper left.
+    let q = textureGatherCompare(shadow_atlas, shadow_sampler, (tile.corner + first + 1.0) * texel, depth);
+    return mix(mix(q.w, q.z, f.x), mix(q.x, q.y, f.x), f.y);
+}
+
+// Part of a light's rays that reach a sample's block: at those of its corners that count. What is looked
+// up there the pixels there would look up themselves, as shadow/mask.rs expects of lookups.
+fn block_passing(place: ShadowPlace) -> f32 {
+    let passing = vec4f(
+        corner_passing(place.tile, vec2f(place.corners_x.x, place.corners_y.x), place.corner_depths.x),
+        corner_passing(place.tile, vec2f(place.corners_x.y, place.corners_y.y), place.corner_depths.y),
+        corner_passing(place.tile, vec2f(place.corners_x.z, place.corners_y.z), place.corner_depths.z),
+        corner_passing(place.tile, vec2f(place.corners_x.w, place.corners_y.w), place.corner_depths.w),
+    );
+    return dot(passing, place.corners_count) / max(dot(place.corners_count, vec4f(1.0)), 1.0);
 }
 #endif
 
@@ -268,7 +291,7 @@ fn arriving_at(place: ShadowPlace) -> Arriving {
     }
     let part = shadow_passing(place.tile, place.at, place.depth, place.softness);
 #ifdef LIGHT
-    if place.apart > 0.0 {
+    if any(place.corners_count > vec4f(0.0)) {
         let over_block = block_passing(place);
         return Arriving(part, over_block * (1.0 - over_block));
     }
@@ -276,13 +299,13 @@ fn arriving_at(place: ShadowPlace) -> Arriving {
     return Arriving(part, 0.0);
 }
 
-// What of a directional light's rays arrives at a surface's sample; `block_m` as in `light_surface`. The
+// What of a directional light's rays arrives at a surface's sample; `block` as in `light_surface`. The
 // atlas knows nothing of normal maps, so the vertex normal tells how the surface lies.
-fn directional_arriving(index: u32, light: Light, s: Surface, block_m: f32) -> Arriving {
-    return arriving_at(place_from_sun(index * SHADOW_ROWS, light, s.position, s.vertex_normal, block_m));
+fn directional_arriving(index: u32, light: Light, s: Surface, block: Block) -> Arriving {
+    return arriving_at(place_from_sun(index * SHADOW_ROWS, light, s.position, s.vertex_normal, block));
 }
 
 // The same of a light that shines from a point.
-fn light_arriving(index: u32, light: Light, s: Surface, block_m: f32) -> Arriving {
-    return arriving_at(place_from_point(index * SHADOW_ROWS, light, s.position, s.vertex_normal, block_m));
+fn light_arriving(index: u32, light: Light, s: Surface, block: Block) -> Arriving {
+    return arriving_at(place_from_point(index * SHADOW_ROWS, light, s.position, s.vertex_normal, block));
 }

@@ -66,9 +66,8 @@ impl LookupSettings {
     }
 }
 
-/// Texels that filters of one width reach, with what is blended: those of samples that stand for
-/// blocks, `MOST_APART_TEXELS` in the shader and one more to each side.
-const SOFT_REACH: f32 = 4.0;
+/// Texels that filters of one width reach, with what is blended.
+const SOFT_REACH: f32 = 3.0;
 /// As in `shadow/contact.wgsl`.
 pub(super) const CONTACT_REACH: f32 = 12.0;
 

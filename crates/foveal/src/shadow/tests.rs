@@ -103,7 +103,7 @@ pub(super) fn compared_with_twin(
             light_surface_with(scene, &lights, model, (surface, v), passing).radiance
         };
         let cpu = lit(&|(number, light), s| {
-            lookup.light_arriving(number, light, (s.position, s.vertex_normal), 0.0)
+            lookup.light_arriving(number, light, (s.position, s.vertex_normal), &[])
         });
         let bright = lit(&|_, _| ALL_ARRIVES);
         compared += 1;

@@ -29,13 +29,13 @@ struct Place {
     at: Vec2,
     depth: f32,
     softness: f32,
-    slope: Vec2,
-    apart: f32,
+    /// Place and depth of each corner that counts.
+    corners: Vec<(Vec2, f32)>,
 }
 
-/// The constants of `shadow/lookup.wgsl`.
-const MOST_APART_TEXELS: f32 = 2.0;
-const LEAST_SUN_COSINE: f32 = 0.1;
+/// `Block` in `shared/light.wgsl`: what the pixels at a block's corners show, those that count, from
+/// the sample's place.
+pub(crate) type Corners = [Vec3];
 
 fn tile_of(word: u32) -> Option<ShadowTile> {
     (word != 0).then(|| ShadowTile {
@@ -167,7 +167,7 @@ impl Lookup {
         light: &LightUniform,
         surface: (Vec3, Vec3),
     ) -> f32 {
-        self.light_arriving(index, light, surface, 0.0).part
+        self.light_arriving(index, light, surface, &[]).part
     }
 
     /// `directional_arriving` and `light_arriving` in the shader.
@@ -176,38 +176,24 @@ impl Lookup {
         index: usize,
         light: &LightUniform,
         surface: (Vec3, Vec3),
-        block_m: f32,
+        corners: &Corners,
     ) -> Arriving {
         let first = index * ROWS;
         let place = if light.is_directional() {
-            self.place_from_sun(first, Vec3::from(light.direction), surface, block_m)
+            self.place_from_sun(first, Vec3::from(light.direction), surface, corners)
         } else {
-            self.place_from_point(first, light, surface, block_m)
+            self.place_from_point(first, light, surface, corners)
         };
         let Some(place) = place else {
             return ALL_ARRIVES;
         };
-        let over_block = match place.apart > 0.0 {
-            true => self.block_passing(&place),
-            false => 0.0,
-        };
+        let passing = |(at, depth): &(Vec2, f32)| self.compared_at(&place.tile, *at, *depth);
+        let over_block =
+            place.corners.iter().map(passing).sum::<f32>() / place.corners.len().max(1) as f32;
         Arriving {
             part: self.passing(&place.tile, place.at, place.depth, place.softness),
             variance: over_block * (1.0 - over_block),
         }
-    }
-
-    fn block_passing(&self, place: &Place) -> f32 {
-        let taps = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(Vec2::from);
-        let sum: f32 = taps
-            .iter()
-            .map(|tap| {
-                let away = place.apart * *tap;
-                let depth = place.depth + place.slope.dot(away).max(0.0);
-                self.compared_at(&place.tile, place.at + away, depth)
-            })
-            .sum();
-        0.25 * sum
     }
 
     fn place_from_point(
@@ -215,7 +201,7 @@ impl Lookup {
         first: usize,
         light: &LightUniform,
         (position, normal): (Vec3, Vec3),
-        block_m: f32,
+        corners: &Corners,
     ) -> Option<Place> {
         let from_light = position - Vec3::from(light.position);
         let near = super::plan::near_of(light);
@@ -237,14 +223,19 @@ impl Lookup {
         }
         let place = Vec2::new(at.x, -at.y) * (0.5 * inner / (at.z * tangent));
         let height = f32::max(-normal.dot(from_light), 0.0);
-        let n = Vec3::from(axes.map(|axis| axis.dot(normal)));
-        let per_texel = near * tangent / (n.dot(at).min(-1e-4) * 0.5 * inner);
+        let seen = |corner: &Vec3| {
+            let p = at + Vec3::from(axes.map(|axis| axis.dot(*corner)));
+            let in_tile = Vec2::new(p.x, -p.y) / (p.z * tangent);
+            let is_inside = p.z > near && in_tile.abs().max_element() <= 1.0;
+            let texel = 0.5 * tile.side as f32 + 0.5 * inner * in_tile;
+            is_inside.then_some((texel, near / p.z))
+        };
+        let corners = corners.iter().filter_map(seen).collect();
         Some(Place {
             at: place + 0.5 * tile.side as f32,
             depth: near / at.z,
             softness: self.pyramid_softness(near, tangent, inner, height),
-            slope: per_texel * Vec2::new(n.x, -n.y),
-            apart: texels_apart(block_m, texel_m),
+            corners,
             tile,
         })
     }
@@ -254,21 +245,27 @@ impl Lookup {
         first: usize,
         direction: Vec3,
         (position, normal): (Vec3, Vec3),
-        block_m: f32,
+        corners: &Corners,
     ) -> Option<Place> {
         let cosine = -normal.dot(direction);
         let (tile, center, texel_m) = self.cascade_at(first, direction, position)?;
         let [_, _, end, per_length] = self.row(first + 1);
         let moved = position + normal * self.offset(&tile, texel_m, cosine);
         let at = (on_plane(direction, moved) - center) / texel_m;
-        let n = on_plane(direction, normal);
-        let per_texel = per_length * texel_m / cosine.max(LEAST_SUN_COSINE);
+        let half = 0.5 * tile.side as f32;
+        let depth = (end - direction.dot(moved)) * per_length;
+        let seen = |corner: &Vec3| {
+            let p = at + on_plane(direction, *corner) / texel_m;
+            let texel = Vec2::new(p.x, -p.y) + half;
+            let is_inside = p.abs().max_element() <= half - 1.0;
+            is_inside.then_some((texel, depth - direction.dot(*corner) * per_length))
+        };
+        let corners = corners.iter().filter_map(seen).collect();
         Some(Place {
-            at: Vec2::new(at.x, -at.y) + 0.5 * tile.side as f32,
-            depth: (end - direction.dot(moved)) * per_length,
+            at: Vec2::new(at.x, -at.y) + half,
+            depth,
             softness: self.settings.sun_tangent / (per_length * texel_m),
-            slope: per_texel * Vec2::new(-n.x, n.y),
-            apart: texels_apart(block_m, texel_m),
+            corners,
             tile,
         })
     }
@@ -293,14 +290,6 @@ impl Lookup {
             let margin = if cascade == 3 { 0.0 } else { reach * texel_m };
             (away.max_element() <= radius - margin).then_some((tile, center, texel_m))
         })
-    }
-}
-
-/// `texels_apart` in the shader.
-fn texels_apart(block_m: f32, texel_m: f32) -> f32 {
-    match block_m > 0.0 {
-        true => (0.5 * block_m / texel_m).clamp(0.5, MOST_APART_TEXELS),
-        false => 0.0,
     }
 }
 

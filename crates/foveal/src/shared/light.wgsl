@@ -34,6 +34,18 @@ struct Lights {
     items: array<Light>,
 }
 
+// The block of pixels that a sample stands for, by the pixels at its corners: what they show, from
+// the sample's place, in metres of world space, and by 1 which of them count: those that show the
+// sample's surface. A pixel has none.
+struct Block {
+    x: vec4f,
+    y: vec4f,
+    z: vec4f,
+    counts: vec4f,
+}
+
+const PIXEL: Block = Block(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
+
 // What of a light's rays arrives where it is looked at.
 struct Arriving {
     // Part of them that reaches the sample.

@@ -120,7 +120,7 @@ fn add_incident(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, a: IncidentLight
 }
 
 // Adds a directional light's part.
-fn add_directional(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block_m: f32, index: u32) -> Lit {
+fn add_directional(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block: Block, index: u32) -> Lit {
     let light = light_at(index);
     let a = incident_from_afar(light);
     let n_dot_l = dot(s.normal, a.direction);
@@ -129,7 +129,7 @@ fn add_directional(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block_m: f32,
     }
     var arriving = ALL_ARRIVES;
     if SHADOWS != 0u {
-        arriving = directional_arriving(index, light, s, block_m);
+        arriving = directional_arriving(index, light, s, block);
         if arriving.part <= 0.0 && arriving.variance <= 0.0 {
             return sum;
         }
@@ -138,7 +138,7 @@ fn add_directional(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block_m: f32,
 }
 
 // Adds the part of a light that shines from a point.
-fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block_m: f32, index: u32, light: Light) -> Lit {
+fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block: Block, index: u32, light: Light) -> Lit {
     let a = incident(light, s.position);
     let n_dot_l = dot(s.normal, a.direction);
     if n_dot_l <= 0.0 || all(a.irradiance <= vec3f(0.0)) {
@@ -146,7 +146,7 @@ fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block_m: f32, index
     }
     var arriving = ALL_ARRIVES;
     if SHADOWS != 0u {
-        arriving = light_arriving(index, light, s, block_m);
+        arriving = light_arriving(index, light, s, block);
         if arriving.part <= 0.0 && arriving.variance <= 0.0 {
             return sum;
         }
@@ -251,15 +251,14 @@ fn light_of(walk: LightWalk) -> Light {
     return light_at(index);
 }
 
-// Radiance that leaves a surface towards the eye, and the lights' light that it comes from. `block_m`:
-// metres that the sample's block is wide; 0 for a pixel, which has no variance. `look`: into the
-// surface.
+// Radiance that leaves a surface towards the eye, and the lights' light that it comes from. `block`:
+// what the sample stands for; a pixel has no variance. `look`: into the surface.
 //
 // Lights are summed in ascending order whichever way they are found, so that clustered and brute agree
 // to the bit. Directional ones have a loop of their own: a device that runs all branches would look up
 // both kinds' shadows for each light. The loop over the others asks at its end: such a device runs
 // the body of a loop once for its last question, too.
-fn light_surface(s: Surface, v: vec3f, look: vec3f, pixel: vec2f, distance: f32, block_m: f32) -> Lit {
+fn light_surface(s: Surface, v: vec3f, look: vec3f, pixel: vec2f, distance: f32, block: Block) -> Lit {
     let seen = environment_seen(pixel, distance);
     var sum = Lit(s.emissive + ambient(s, v, seen, look), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0);
     var mirror = mirror_of(s);
@@ -268,12 +267,12 @@ fn light_surface(s: Surface, v: vec3f, look: vec3f, pixel: vec2f, distance: f32,
     }
     let directional = directional_lights();
     for (var i = 0u; i < directional; i++) {
-        sum = add_directional(sum, s, mirror, v, block_m, i);
+        sum = add_directional(sum, s, mirror, v, block, i);
     }
     var walk = first_light(pixel, distance, s.position, s.normal);
     loop {
         if walk.bits != 0u {
-            sum = add_light(sum, s, mirror, v, block_m, light_number(walk), light_of(walk));
+            sum = add_light(sum, s, mirror, v, block, light_number(walk), light_of(walk));
         }
         walk = next_light(walk, s.position, s.normal);
         continuing {
@@ -291,5 +290,5 @@ fn radiance_of(s: Surface, pixel: vec2f, distance: f32, is_behind: bool) -> vec3
         return background(look);
     }
     // The largest half: brighter would become infinite in the target.
-    return min(light_surface(s, v, look, pixel, distance, 0.0).radiance, vec3f(65504.0));
+    return min(light_surface(s, v, look, pixel, distance, PIXEL).radiance, vec3f(65504.0));
 }

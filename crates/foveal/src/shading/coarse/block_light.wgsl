@@ -56,6 +56,33 @@ fn unit_or(direction: vec3f, other: vec3f) -> vec3f {
     return select(other, direction / max(size, 1e-30), size > 1e-30);
 }
 
+// Sine of the angle by which a corner's place may lie off the sample's plane and count as the same
+// surface.
+const MOST_OFF_PLANE: f32 = 0.3;
+
+// A block's corner: what it shows, from a sample's surface, and in w whether that counts, by 1.
+fn corner_of(block: vec2u, level: u32, corner: vec2u, s: Surface) -> vec4f {
+    let last = (block << vec2u(level)) + corner * ((1u << level) - 1u);
+    let texel = min(last, picture_of(block << vec2u(level)).end - 1u);
+    let depth = gbuffer_depth_at(texel);
+    let offset = world_position(vec2f(texel) + 0.5, view_distance(max(depth, 1e-20))) - s.position;
+    let is_same = depth > 0.0 && abs(dot(s.vertex_normal, offset)) <= MOST_OFF_PLANE * length(offset);
+    return select(vec4f(0.0), vec4f(offset, 1.0), is_same);
+}
+
+fn corners_of(block: vec2u, level: u32, s: Surface) -> Block {
+    let a = corner_of(block, level, vec2u(0u, 0u), s);
+    let b = corner_of(block, level, vec2u(1u, 0u), s);
+    let c = corner_of(block, level, vec2u(0u, 1u), s);
+    let d = corner_of(block, level, vec2u(1u, 1u), s);
+    return Block(
+        vec4f(a.x, b.x, c.x, d.x),
+        vec4f(a.y, b.y, c.y, d.y),
+        vec4f(a.z, b.z, c.z, d.z),
+        vec4f(a.w, b.w, c.w, d.w),
+    );
+}
+
 fn light_block(block: vec2u, level: u32) -> LitBlock {
     let candidate = candidate_of(block, level);
     let alpha = f32(1u + candidate);
@@ -66,7 +93,6 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
     let distance = select(view_distance(depth), 1.0, is_behind);
     var s = unpack_surface(gbuffer_words_at(texel), world_position(pixel, distance));
     var roughness = s.roughness;
-    let block_m = select(0.0, pixel_width_at(view_at(pixel), distance) * f32(1u << level), level > 0u);
     if level > 0u {
         let filtered = filter_over_block(s, block, level, distance);
         s = filtered.surface;
@@ -77,7 +103,11 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
     if is_behind {
         return LitBlock(vec4f(background(look), alpha), vec4u(0u));
     }
-    let lit = light_surface(s, v, look, pixel, distance, block_m);
+    var corners = PIXEL;
+    if level > 0u {
+        corners = corners_of(block, level, s);
+    }
+    let lit = light_surface(s, v, look, pixel, distance, corners);
     let direction = unit_or(lit.direction, s.normal);
     let specular_direction = unit_or(lit.specular_direction, s.normal);
     let together = saturate(length(lit.specular_direction) / max(luminance(lit.specular), 1e-30));
