@@ -154,7 +154,9 @@ impl Graphics {
                 self.surface.configure(&self.device, &self.configuration);
                 return false;
             }
-            // Hidden, or a frame too many: the next event tries again.
+            // A frame too many.
+            Current::Timeout => return false,
+            // Hidden: the event that shows it again tries again.
             _ => return true,
         };
         let view = frame.texture.create_view(&Default::default());

@@ -101,7 +101,9 @@ impl ApplicationHandler<Wake> for Handler {
             },
             _ => {}
         }
-        if response.repaint {
+        // A redraw says itself when the next one is due: for it the answer is always yes, and the
+        // window would be drawn without end.
+        if response.repaint && !matches!(event, WindowEvent::RedrawRequested) {
             open.window.request_redraw();
         }
     }

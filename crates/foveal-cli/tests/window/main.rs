@@ -122,6 +122,21 @@ fn a_large_window_is_legible_too_and_shows_coarse_shading() {
     assert_eq!(shot.legibility(), Ok(()));
 }
 
+#[test]
+fn a_window_rests_once_its_view_is_drawn_and_after_it_was_moved() {
+    if !is_possible() {
+        return;
+    }
+    let mut screen = Screen::open((960, 540), &["cornell"]);
+    screen.until_at_rest();
+    let start = screen.settled();
+    screen.key("alt+1");
+    screen.until("the camera is in front", |s| {
+        (differing(&start.picture(), &s.shot().picture()) > 0.2).then_some(())
+    });
+    screen.until_at_rest();
+}
+
 /// Middles of buttons in the bar of a window of 1280 pixels' width.
 const SAVE: (usize, usize) = (993, 19);
 const LOAD: (usize, usize) = (1044, 19);

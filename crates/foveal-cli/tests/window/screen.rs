@@ -221,6 +221,26 @@ impl Screen {
         })
     }
 
+    /// Waits until the window takes no more time of the processor.
+    pub(crate) fn until_at_rest(&mut self) {
+        // Hundredths of a second: the program's own and what the system did for it.
+        let taken = |screen: &Self| -> u64 {
+            let stat = std::fs::read_to_string(format!("/proc/{}/stat", screen.window.0.id()));
+            let stat = stat.unwrap();
+            let after_name = stat.rsplit_once(") ").unwrap().1;
+            let fields = after_name.split(' ').skip(11).take(2);
+            fields.map(|field| field.parse::<u64>().unwrap()).sum()
+        };
+        let mut seconds_at_rest = 0;
+        self.until("the window rests", |screen| {
+            let before = taken(screen);
+            std::thread::sleep(Duration::from_secs(1));
+            let rests = taken(screen) - before < 3;
+            seconds_at_rest = if rests { seconds_at_rest + 1 } else { 0 };
+            (seconds_at_rest >= 3).then_some(())
+        });
+    }
+
     /// Tries until `ready` gives something.
     pub(crate) fn until<T>(&mut self, what: &str, mut ready: impl FnMut(&Self) -> Option<T>) -> T {
         let start = Instant::now();
