@@ -57,9 +57,9 @@ impl Graphics {
             theirs.store(true, Ordering::Relaxed);
             wake();
         });
-        let size = window.inner_size();
+        let [width, height] = drawn_size(window.inner_size(), &device.limits());
         let mut configuration = surface
-            .get_default_config(&adapter, size.width.max(1), size.height.max(1))
+            .get_default_config(&adapter, width, height)
             .ok_or_else(|| anyhow!("the graphics adapter cannot draw to the window"))?;
         // The interface blends as if values were sRGB: a target that does not encode suits it.
         let formats = surface.get_capabilities(&adapter).formats;
@@ -97,7 +97,8 @@ impl Graphics {
     }
 
     pub(crate) fn resize(&mut self, size: PhysicalSize<u32>) {
-        (self.configuration.width, self.configuration.height) = (size.width, size.height);
+        let size = drawn_size(size, &self.device.limits());
+        [self.configuration.width, self.configuration.height] = size;
         self.surface.configure(&self.device, &self.configuration);
     }
 
@@ -195,6 +196,13 @@ impl Graphics {
     }
 }
 
+/// How much of a window of this size is drawn, from its upper left corner: a window can be larger
+/// than any texture.
+fn drawn_size(window: PhysicalSize<u32>, limits: &wgpu::Limits) -> [u32; 2] {
+    let most = limits.max_texture_dimension_2d;
+    [window.width, window.height].map(|pixels| pixels.clamp(1, most))
+}
+
 /// Whether the device is lost. A loss that nobody waits for is told when the device is asked; wgpu
 /// panics where it is the driver that reports it then.
 fn finds_loss(lost: &AtomicBool, ask: impl FnOnce()) -> bool {
@@ -210,6 +218,18 @@ fn finds_loss(lost: &AtomicBool, ask: impl FnOnce()) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_window_larger_than_any_texture_is_drawn_in_part() {
+        let limits = wgpu::Limits {
+            max_texture_dimension_2d: 8192,
+            ..wgpu::Limits::downlevel_defaults()
+        };
+        let drawn = |width, height| drawn_size(PhysicalSize::new(width, height), &limits);
+        assert_eq!(drawn(1280, 720), [1280, 720]);
+        assert_eq!(drawn(17000, 300), [8192, 300]);
+        assert_eq!(drawn(0, 9000), [1, 8192]);
+    }
 
     #[test]
     fn a_driver_that_panics_when_it_is_asked_has_lost_the_device() {
