@@ -234,7 +234,7 @@ pub(crate) fn checked(draft: &Table) -> Result<Settings, String> {
 }
 
 /// Settings that make sense on some device.
-fn sound(settings: Settings) -> Result<Settings, String> {
+pub(crate) fn sound(settings: Settings) -> Result<Settings, String> {
     let limits = wgpu::Limits {
         max_texture_dimension_2d: 16384,
         max_buffer_size: u64::MAX,

@@ -3,8 +3,11 @@
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
+use anyhow::anyhow;
+
 use super::App;
 use crate::command;
+use crate::needs;
 use crate::worker::Rgba;
 
 impl App {
@@ -19,6 +22,11 @@ impl App {
     }
 
     pub(crate) fn save_settings(&mut self, context: &egui::Context) {
+        if let Some(wrong) = &self.wrong {
+            // Those of the picture are not the ones that the panels show.
+            self.complain(format!("The settings are not saved: {wrong}"));
+            return;
+        }
         let path = PathBuf::from(&self.settings_file);
         let written = self
             .settings_text(&path)
@@ -61,7 +69,13 @@ impl App {
 
     /// Reads settings from a file, which is the one that they are saved to then.
     pub(crate) fn load_settings(&mut self, context: &egui::Context, file: String) {
-        match (self.host.read_settings)(Path::new(&file)) {
+        let read = (self.host.read_settings)(Path::new(&file));
+        let sound = read.and_then(|(settings, is_sized)| {
+            let sound = needs::sound(settings);
+            let cannot = |cause| anyhow!("the settings file '{file}' is wrong: {cause}");
+            Ok((sound.map_err(cannot)?, is_sized))
+        });
+        match sound {
             Ok((settings, is_sized)) => {
                 // A file's size holds; what follows the window has none of its own.
                 self.display.fit &= !is_sized;
@@ -105,6 +119,7 @@ mod tests {
     use std::sync::{Arc, Mutex};
 
     use anyhow::bail;
+    use foveal::Settings;
     use toml::Table;
 
     use super::*;
@@ -128,7 +143,7 @@ mod tests {
             for key in ["width", "height"] {
                 assert_eq!(table.contains_key(key), !fit, "{key}: {saved}");
             }
-            let settings: foveal::Settings = table.try_into().unwrap();
+            let settings: Settings = table.try_into().unwrap();
             assert_eq!(settings, app.settings);
         }
     }
@@ -142,7 +157,7 @@ mod tests {
         }
         let keys: Vec<&str> = text.lines().filter_map(|l| l.split(" = ").next()).collect();
         let of_size = |key: &&str| ["width", "height"].contains(key);
-        let listed = foveal::Settings::ALL.iter().map(|setting| setting.key);
+        let listed = Settings::ALL.iter().map(|setting| setting.key);
         assert_eq!(keys, listed.filter(|key| !of_size(key)).collect::<Vec<_>>());
     }
 
@@ -176,6 +191,41 @@ mod tests {
                 "{message:?}"
             );
         }
+    }
+
+    #[test]
+    fn settings_that_make_no_sense_are_neither_loaded_nor_saved() {
+        let mut app = loaded();
+        let context = egui::Context::default();
+        let before = app.draft.clone();
+        let host = Arc::get_mut(&mut app.host).unwrap();
+        host.read_settings = |_| {
+            Ok((
+                Settings::default().with(|s| s.picture.exposure_stops = f32::NAN),
+                true,
+            ))
+        };
+        host.write_file = |path, _| panic!("{} is written", path.display());
+        app.load_settings(&context, "dark.toml".to_owned());
+        let message = app.messages.pop().unwrap();
+        assert!(message.is_error, "{message:?}");
+        for part in ["'dark.toml'", "exposure", "NaN"] {
+            assert!(message.text.contains(part), "{message:?}");
+        }
+        assert!(app.display.fit);
+        assert_eq!(
+            (app.draft.clone(), app.settings_file.as_str()),
+            (before, "foveal.toml")
+        );
+
+        app.draft.insert("eye-tangents".to_owned(), "wide".into());
+        app.take_settings();
+        app.save_settings(&context);
+        let message = &app.messages[0];
+        assert!(
+            message.is_error && message.text.contains("wide"),
+            "{message:?}"
+        );
     }
 
     #[test]
