@@ -29,7 +29,13 @@ impl SettingsArgs {
             None => (Settings::default(), false),
         };
         let settings = with(&below, &self.given)?;
-        check(&settings)?;
+        let checked = check(&settings);
+        match &self.file {
+            Some(path) if check(&below).is_err() => {
+                checked.with_context(|| format!("the settings file '{}' is wrong", path.display()))
+            }
+            _ => checked,
+        }?;
         Ok((settings, is_sized || gives_size(&self.given)))
     }
 }

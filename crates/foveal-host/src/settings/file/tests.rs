@@ -289,3 +289,28 @@ fn senseless_values_are_refused() {
         assert!(check(&parse(text).unwrap()).is_err(), "{text}");
     }
 }
+
+#[test]
+fn a_file_whose_values_make_no_sense_is_named_unless_flags_mend_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("dark.toml");
+    std::fs::write(&file, "exposure = nan").unwrap();
+    let resolve = |flags: &[&str]| {
+        let words = ["x", "--settings", file.to_str().unwrap()];
+        Line::try_parse_from([&words, flags].concat())
+            .unwrap()
+            .settings
+            .resolve()
+    };
+    let error = format!("{:#}", resolve(&[]).unwrap_err());
+    for part in ["dark.toml' is wrong: ", "exposure", "NaN"] {
+        assert!(error.contains(part), "{error}");
+    }
+    assert_eq!(
+        resolve(&["--exposure", "1"])
+            .unwrap()
+            .picture
+            .exposure_stops,
+        1.0
+    );
+}
