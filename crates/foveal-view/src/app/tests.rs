@@ -154,7 +154,7 @@ impl<'a> Pass<'a> {
 #[derive(Debug)]
 pub(crate) struct Text {
     pub(crate) says: String,
-    rect: Rect,
+    pub(crate) rect: Rect,
     clip: Rect,
     is_elided: bool,
 }

@@ -1,6 +1,7 @@
 //! The bar on top: scene, camera, files. The line below: what the keys do.
 
-use egui::{Align, Layout, RichText};
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Align, Layout, PopupCloseBehavior, RichText};
 
 use crate::app::App;
 use crate::navigator::{Mode, Side};
@@ -160,26 +161,37 @@ fn files(app: &mut App, ui: &mut egui::Ui) {
     if ui.ctx().content_rect().width() >= WIDE {
         file_buttons(app, ui);
     } else {
-        ui.menu_button("Files", |ui| file_buttons(app, ui));
+        // A click into the field for the file's name leaves it open.
+        let closes = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        MenuButton::new("Files").config(closes).ui(ui, |ui| {
+            if file_buttons(app, ui) {
+                ui.close();
+            }
+        });
     }
 }
 
-fn file_buttons(app: &mut App, ui: &mut egui::Ui) {
+/// Whether one of the buttons is clicked.
+fn file_buttons(app: &mut App, ui: &mut egui::Ui) -> bool {
+    let mut is_clicked = false;
     if ui
         .button("Screenshot")
         .on_hover_text("Writes the picture as foveal-001.png and so on (P)")
         .clicked()
     {
         app.take_screenshot(ui.ctx());
+        is_clicked = true;
     }
     if ui
         .button("Copy command")
         .on_hover_text("Copies the command that draws this picture to a file, byte by byte")
         .clicked()
-        && let Some(line) = app.command_line()
     {
-        ui.ctx().copy_text(line);
-        app.say(ui.ctx(), "The command is in the clipboard");
+        if let Some(line) = app.command_line() {
+            ui.ctx().copy_text(line);
+            app.say(ui.ctx(), "The command is in the clipboard");
+        }
+        is_clicked = true;
     }
     if ui
         .button("Load")
@@ -187,6 +199,7 @@ fn file_buttons(app: &mut App, ui: &mut egui::Ui) {
         .clicked()
     {
         app.load_settings(ui.ctx(), app.settings_file.clone());
+        is_clicked = true;
     }
     if ui
         .button("Save")
@@ -194,6 +207,7 @@ fn file_buttons(app: &mut App, ui: &mut egui::Ui) {
         .clicked()
     {
         app.save_settings(ui.ctx());
+        is_clicked = true;
     }
     let file = egui::TextEdit::singleline(&mut app.settings_file).desired_width(96.0);
     ui.add(file).on_hover_text("The settings file, TOML");
@@ -203,7 +217,9 @@ fn file_buttons(app: &mut App, ui: &mut egui::Ui) {
         .clicked()
     {
         app.capture.is_open = !app.capture.is_open;
+        is_clicked = true;
     }
+    is_clicked
 }
 
 /// What the keys do, as many as fit, and where one is.
@@ -268,4 +284,48 @@ pub(super) fn keys(app: &mut App, ui: &mut egui::Ui) {
             });
         });
     app.display.keys = is_open;
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Event, Modifiers, PointerButton, Pos2};
+
+    use crate::app::App;
+    use crate::app::tests::{Pass, SIZES, loaded, texts};
+
+    #[test]
+    fn a_file_s_name_can_be_typed_in_the_menu_of_a_narrow_window() {
+        let mut app = loaded();
+        let context = egui::Context::default();
+        let pass = Pass::new(&context, SIZES[0]);
+        let place = |app: &mut App, says: &str| -> Option<Pos2> {
+            for _ in 0..2 {
+                pass.show(app, Vec::new());
+            }
+            let seen = texts(&pass.show(app, Vec::new()));
+            let text = seen.into_iter().find(|text| text.says == says);
+            text.map(|text| text.rect.right_center())
+        };
+        let click = |app: &mut App, pos: Pos2| {
+            let press = |pressed| Event::PointerButton {
+                pos,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::NONE,
+            };
+            pass.show(app, vec![Event::PointerMoved(pos), press(true)]);
+            pass.show(app, vec![press(false)]);
+        };
+        for says in ["Files", "foveal.toml"] {
+            let at = place(&mut app, says).unwrap();
+            click(&mut app, at);
+        }
+        pass.show(&mut app, vec![Event::Text("2".to_owned())]);
+        assert_eq!(app.settings_file, "foveal.toml2");
+        // What is chosen closes the menu.
+        let save = place(&mut app, "Save").unwrap();
+        click(&mut app, save);
+        assert!(app.messages[0].is_error, "{:?}", app.messages);
+        assert_eq!(place(&mut app, "Save"), None);
+    }
 }
