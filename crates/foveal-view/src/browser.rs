@@ -1,6 +1,6 @@
 //! The open dialog's state: a folder, what of it is listed, and which line is chosen.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use crate::{Files, Listing};
 
@@ -124,6 +124,13 @@ impl Browser {
         if self.chosen == 0 && !["", "."].contains(&typed) {
             let path = self.folder.join(typed);
             if files.is_folder(&path) {
+                // Of `a/..` the folder above would be `a`.
+                let leads_up = path.components().any(|part| part == Component::ParentDir);
+                let path = if leads_up {
+                    files.full_name(&path.display().to_string()).into()
+                } else {
+                    path
+                };
                 self.enter(files, path);
                 return Choice::Stays;
             }
@@ -154,6 +161,19 @@ pub(crate) mod tests {
         pub(crate) memory: Mutex<String>,
     }
 
+    /// `a/.` and `a/b/..` are `a`.
+    fn resolved(path: &Path) -> PathBuf {
+        let mut found = PathBuf::new();
+        for part in path.components() {
+            if part == Component::ParentDir {
+                found.pop();
+            } else {
+                found.push(part);
+            }
+        }
+        found
+    }
+
     impl Files for Imagined {
         fn start(&self) -> PathBuf {
             "/home/eva".into()
@@ -161,9 +181,7 @@ pub(crate) mod tests {
 
         fn list(&self, folder: &Path) -> anyhow::Result<Listing> {
             let names = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect();
-            // `a/.` is `a`.
-            let folder: PathBuf = folder.components().collect();
-            Ok(match folder.to_str() {
+            Ok(match resolved(folder).to_str() {
                 Some("/home/eva") => Listing {
                     folders: names(&[".cache", "models", "pictures"]),
                     scenes: names(&["Castle.glb", "room.gltf"]),
@@ -186,7 +204,7 @@ pub(crate) mod tests {
         }
 
         fn full_name(&self, scene: &str) -> String {
-            scene.to_owned()
+            resolved(Path::new(scene)).display().to_string()
         }
 
         fn memory(&self) -> String {
@@ -253,6 +271,18 @@ pub(crate) mod tests {
         assert_eq!(names(&browser)[browser.chosen], "eva");
         // Up there is nothing that can be read: it stays, and says why.
         browser.enter_parent(&files);
+        assert_eq!(browser.folder(), Path::new("/home"));
+        assert!(browser.fault.is_some());
+    }
+
+    #[test]
+    fn the_folder_above_one_that_dots_led_to_is_above_it() {
+        let (files, mut browser) = browser();
+        browser.typed = "models/../..".to_owned();
+        assert_eq!(browser.accept(&files), Choice::Stays);
+        assert_eq!(browser.folder(), Path::new("/home"));
+        browser.enter_parent(&files);
+        // It cannot be read: had it been /home/eva/models, it could.
         assert_eq!(browser.folder(), Path::new("/home"));
         assert!(browser.fault.is_some());
     }

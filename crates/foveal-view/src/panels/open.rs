@@ -98,20 +98,16 @@ fn folder(app: &App, browser: &mut Browser, ui: &mut Ui, height: f32) -> Choice 
         ui.add(egui::Label::new(RichText::new(&folder).color(look::FAINT)).truncate())
             .on_hover_text(folder);
     });
+    // Kept from the field. They come after what was typed in the same pass, which can be long.
     let pressed = |key| ui.input_mut(|i| i.consume_key(Modifiers::NONE, key));
-    for (key, by) in [
+    let steps = [
         (Key::ArrowDown, 1),
         (Key::ArrowUp, -1),
         (Key::PageDown, 8),
         (Key::PageUp, -8),
-    ] {
-        if pressed(key) {
-            browser.step(by);
-        }
-    }
-    if pressed(Key::Enter) {
-        choice = browser.accept(files);
-    }
+    ]
+    .map(|(key, by)| if pressed(key) { by } else { 0 });
+    let is_entered = pressed(Key::Enter);
     let before = browser.typed.clone();
     let field = TextEdit::singleline(&mut browser.typed)
         .desired_width(f32::INFINITY)
@@ -121,6 +117,12 @@ fn folder(app: &App, browser: &mut Browser, ui: &mut Ui, height: f32) -> Choice 
     if browser.typed != before {
         browser.chosen = 0;
         browser.fault = None;
+    }
+    for by in steps {
+        browser.step(by);
+    }
+    if is_entered {
+        choice = browser.accept(files);
     }
     if let Some(fault) = &browser.fault {
         ui.label(RichText::new(fault).color(look::BAD));
@@ -155,4 +157,32 @@ fn folder(app: &App, browser: &mut Browser, ui: &mut Ui, height: f32) -> Choice 
             }
         });
     choice
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::Event;
+
+    use super::*;
+    use crate::app::tests::{Pass, SIZES, loaded};
+
+    #[test]
+    fn enter_is_for_what_was_typed_before_it_in_the_same_pass() {
+        let mut app = loaded();
+        let context = egui::Context::default();
+        let pass = Pass::new(&context, SIZES[0]);
+        app.open_dialog();
+        for _ in 0..2 {
+            pass.show(&mut app, Vec::new());
+        }
+        let enter = Event::Key {
+            key: Key::Enter,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        };
+        pass.show(&mut app, vec![Event::Text("Cas".to_owned()), enter]);
+        assert_eq!(app.opening.as_deref(), Some("/home/eva/Castle.glb"));
+    }
 }
