@@ -80,7 +80,10 @@ pub(crate) fn show(app: &mut App, ui: &mut egui::Ui) {
             app.select_at(place);
         }
         if response.hovered() {
-            hands.scroll = ui.input(|i| i.smooth_scroll_delta().y) / 50.0;
+            // With Shift, which hurries, the interface takes the wheel for one that goes sideways.
+            let by = ui.input(|i| i.smooth_scroll_delta());
+            let is_sideways = ui.input(|i| i.modifiers.shift);
+            hands.scroll = if is_sideways { by.x } else { by.y } / 50.0;
         }
         if response.clicked() || response.dragged() {
             // Keys belong to the picture again.
@@ -311,9 +314,34 @@ fn messages(app: &mut App, ui: &egui::Ui, place: Rect) {
 
 #[cfg(test)]
 mod tests {
+    use egui::{Event, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase};
     use foveal::{Culling, Settings};
 
+    use super::*;
     use crate::app::tests::{Pass, SIZES, loaded, texts};
+
+    #[test]
+    fn the_wheel_changes_the_speed_with_shift_too() {
+        for modifiers in [Modifiers::NONE, Modifiers::SHIFT] {
+            let mut app = loaded();
+            let context = egui::Context::default();
+            let pass = Pass::new(&context, SIZES[0]);
+            let speed = |app: &App| app.navigator.as_ref().unwrap().speed_m_s;
+            let before = speed(&app);
+            let over_picture = Event::PointerMoved(Pos2::new(480.0, 300.0));
+            pass.show(&mut app, vec![over_picture]);
+            pass.show(&mut app, Vec::new());
+            let wheel = Event::MouseWheel {
+                unit: MouseWheelUnit::Line,
+                delta: Vec2::new(0.0, 1.0),
+                phase: TouchPhase::Move,
+                source: MouseWheelSource::Unknown,
+                modifiers,
+            };
+            pass.show(&mut app, vec![Event::ModifiersChanged(modifiers), wheel]);
+            assert!(speed(&app) > before, "{modifiers:?}");
+        }
+    }
 
     #[test]
     fn legends_are_of_what_is_drawn() {
