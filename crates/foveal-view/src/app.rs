@@ -282,8 +282,13 @@ impl App {
         self.asked = None;
         self.history.clear();
         if scene.warnings > 0 {
+            let (many, them) = if scene.warnings == 1 {
+                ("", "it")
+            } else {
+                ("s", "them")
+            };
             let text = format!(
-                "{}: {} warnings; 'foveal scene info' lists them",
+                "{}: {} warning{many}; 'foveal scene info' lists {them}",
                 scene.name, scene.warnings
             );
             self.say(context, text);
@@ -333,7 +338,7 @@ impl App {
     }
 
     /// Makes textures of what is shown.
-    fn load_textures(&mut self, context: &egui::Context) {
+    pub(crate) fn load_textures(&mut self, context: &egui::Context) {
         let Some(shown) = &self.shown else { return };
         let load =
             |slot: &mut Option<TextureHandle>, name: &str, image: egui::ColorImage| match slot {

@@ -255,7 +255,8 @@ fn depth(app: &App, ui: &egui::Ui, place: Rect) {
     let stroke = Stroke::new(1.0, look::FAINT);
     painter.rect_stroke(rect, CornerRadius::ZERO, stroke, StrokeKind::Outside);
     let text = "occluders' depth: white near, dark far, black open";
-    let galley = painter.layout_no_wrap(text.to_owned(), look::small_font(), look::TEXT);
+    let width = rect.width() - 8.0;
+    let galley = painter.layout(text.to_owned(), look::small_font(), look::TEXT, width);
     let back = Rect::from_min_size(rect.min, galley.size() + Vec2::splat(8.0));
     painter.rect_filled(back, CornerRadius::ZERO, Color32::from_black_alpha(190));
     painter.galley(rect.min + Vec2::splat(4.0), galley, look::TEXT);
@@ -319,6 +320,7 @@ mod tests {
 
     use super::*;
     use crate::app::tests::{Pass, SIZES, loaded, texts};
+    use crate::worker::OccluderDepth;
 
     #[test]
     fn the_wheel_changes_the_speed_with_shift_too() {
@@ -341,6 +343,27 @@ mod tests {
             pass.show(&mut app, vec![Event::ModifiersChanged(modifiers), wheel]);
             assert!(speed(&app) > before, "{modifiers:?}");
         }
+    }
+
+    #[test]
+    fn what_the_depth_s_greys_mean_fits_a_small_window() {
+        let mut app = loaded();
+        app.display.depth = true;
+        app.shown.as_mut().unwrap().depth = Some(OccluderDepth {
+            width: 16,
+            height: 9,
+            near_over_distance: vec![0.5; 16 * 9],
+        });
+        let context = egui::Context::default();
+        let pass = Pass::new(&context, SIZES[0]);
+        app.load_textures(&context);
+        pass.show(&mut app, Vec::new());
+        let said = texts(&pass.show(&mut app, Vec::new()));
+        let meaning = said.iter().find(|text| text.says.starts_with("occluders'"));
+        assert!(
+            meaning.unwrap().rect.right() < SIZES[0].x - 268.0,
+            "{meaning:?}"
+        );
     }
 
     #[test]

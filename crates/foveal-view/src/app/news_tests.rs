@@ -101,3 +101,19 @@ fn nothing_is_asked_of_a_scene_that_goes() {
     pass.show(&mut app, Vec::new());
     assert_eq!(app.worker.ordered(), ["draw"]);
 }
+
+#[test]
+fn warnings_of_a_scene_are_counted_in_words_that_fit() {
+    for (warnings, words) in [
+        (1, "1 warning; 'foveal scene info' lists it"),
+        (2, "2 warnings; 'foveal scene info' lists them"),
+    ] {
+        let mut app = loaded();
+        let scene = LoadedScene {
+            warnings,
+            ..tests::scene()
+        };
+        app.take_scene(&egui::Context::default(), scene);
+        assert_eq!(app.messages[0].text, format!("cornell: {words}"));
+    }
+}
