@@ -34,7 +34,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME|NUMBER")]
     adapter: Option<String>,
 
-    /// Size of the window in pixels, at most 16384 a side
+    /// Size of the window in pixels, at most 16384 a side; it opens at no less than 960x540 points
     #[arg(long, value_name = "WxH", value_parser = values::window, default_value = "1280x720")]
     window: (u32, u32),
 
