@@ -1,6 +1,6 @@
 //! The animation: which clip plays, where in it one is.
 
-use egui::{Slider, Ui};
+use egui::{Slider, SliderClamping, Ui};
 use foveal_scene::{Clip, printable};
 
 use crate::app::App;
@@ -63,8 +63,10 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
         ui.spacing_mut().slider_width = (ui.available_width() - 130.0).max(60.0);
         let slider = Slider::new(&mut app.display.time_s, 0.0..=duration_s.max(1e-3))
             .fixed_decimals(2)
+            // Else it would round the moment in each pass, and with it the animation's speed.
+            .clamping(SliderClamping::Edits)
             .suffix(format!(" of {duration_s:.2} s"));
-        if ui.add(slider).dragged() {
+        if ui.add(slider).changed() {
             app.display.playing = false;
         }
     });
@@ -73,6 +75,24 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::tests::{Pass, SIZES, loaded};
+
+    #[test]
+    fn an_animation_runs_as_fast_as_time_does() {
+        let mut app = loaded();
+        let context = egui::Context::default();
+        let pass = Pass::new(&context, SIZES[0]);
+        app.display.playing = true;
+        // Sixty passes are a second, of a clip of 1.5.
+        for _ in 0..60 {
+            pass.show(&mut app, Vec::new());
+        }
+        let time_s = app.display.time_s;
+        assert!(
+            app.display.playing && (time_s - 1.0).abs() < 0.02,
+            "{time_s}"
+        );
+    }
 
     #[test]
     fn a_clip_is_shown_without_control_characters_and_by_its_number_where_it_has_no_name() {
