@@ -9,7 +9,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::{Limit, amount};
-use crate::{Clip, Scene, SceneError, TextureCompression, gltf};
+use crate::{Clip, Code, Scene, SceneError, TextureCompression, gltf};
 
 /// What to do with a primitive that brings no normals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -119,14 +119,14 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, SceneError> {
     let watch = crate::timings::Stopwatch::start();
     let file = path.display().to_string();
     let allowance = AtomicU64::new(options.max_file_bytes);
-    let bytes = read_limited(path, &allowance).map_err(|cause| SceneError::Read {
-        file: file.clone(),
-        cause,
+    let bytes = read_limited(path, &allowance).map_err(|cause| {
+        let file = file.clone();
+        named_limit(SceneError::Read { file, cause })
     })?;
     let read_ms = watch.elapsed_ms();
     let folder = path.parent().unwrap_or(Path::new(""));
     let resolver = |uri: &str| resolve_beside(folder, uri, options.outside_files, &allowance);
-    let mut scene = import(&bytes, &file, options, &resolver)?;
+    let mut scene = import(&bytes, &file, options, &resolver).map_err(named_limit)?;
     scene.name = path
         .file_name()
         .map_or_else(|| file.clone(), |n| n.to_string_lossy().into_owned());
@@ -184,6 +184,32 @@ fn import(
     gltf::import(bytes, file, Vec::new(), options, resolver)
 }
 
+/// How the cause ends where files have more bytes than [`LoadOptions::max_file_bytes`].
+const BEYOND_LIMIT: &str = "that the limit on files leaves";
+
+/// The scene's file, or a buffer's, that was not read because of its size is too large, not
+/// unreadable.
+fn named_limit(error: SceneError) -> SceneError {
+    let (file, place, cause) = match error {
+        SceneError::Read { file, cause } if cause.ends_with(BEYOND_LIMIT) => {
+            (file, "file".to_owned(), cause)
+        }
+        SceneError::Invalid {
+            file,
+            code: Code::BufferUnreadable,
+            place,
+            cause,
+        } if cause.ends_with(BEYOND_LIMIT) => (file, place, cause),
+        other => return other,
+    };
+    SceneError::TooLarge {
+        file,
+        place,
+        cause,
+        limit: Some(Limit::FileBytes),
+    }
+}
+
 /// Reads a regular file, as long as `allowance` bytes suffice, and takes its size from them.
 fn read_limited(path: &Path, allowance: &AtomicU64) -> Result<Vec<u8>, String> {
     let file = open_regular(path)?;
@@ -193,7 +219,7 @@ fn read_limited(path: &Path, allowance: &AtomicU64) -> Result<Vec<u8>, String> {
         .fetch_update(Ordering::Relaxed, Ordering::Relaxed, rest)
         .map_err(|left| {
             format!(
-                "it has {}, more than the {} that the limit on files leaves",
+                "it has {}, more than the {} {BEYOND_LIMIT}",
                 amount(size),
                 amount(left)
             )
@@ -289,6 +315,34 @@ mod tests {
         assert!(directory.is_err_and(|e| e.to_string() == ". cannot be read: it is a directory"));
         let missing = load(Path::new("no/such.glb"), &LoadOptions::default());
         assert!(missing.is_err_and(|e| e.to_string().starts_with("no/such.glb cannot be read")));
+    }
+
+    #[test]
+    fn files_beyond_the_limit_name_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = folder.path().join("a.gltf");
+        let text = r#"{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "buffers": [{"uri": "a.bin", "byteLength": 36}]}"#;
+        std::fs::write(&scene, text).unwrap();
+        std::fs::write(folder.path().join("a.bin"), [0; 36]).unwrap();
+        let both = text.len() as u64 + 36;
+        for (max_file_bytes, place) in [(both - 37, "file"), (both - 1, "buffers[0]")] {
+            let options = LoadOptions {
+                max_file_bytes,
+                ..LoadOptions::default()
+            };
+            let error = load(&scene, &options).unwrap_err();
+            assert_eq!(error.limit(), Some(Limit::FileBytes), "{error}");
+            assert!(error.to_string().contains(place), "{error}");
+        }
+        let options = LoadOptions {
+            max_file_bytes: both,
+            ..LoadOptions::default()
+        };
+        assert!(load(&scene, &options).is_ok());
     }
 
     #[test]
