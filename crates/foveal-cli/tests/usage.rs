@@ -87,6 +87,7 @@ fn words_that_contradict_each_other_are_usage_errors() {
         ("render -o a.png --skip-existing", "--frames"),
         ("render -o a.png --light-seed 4", "--point-lights"),
         ("render -o a.jpg", ".png"),
+        ("render -o a.png -o flat --show headset", "--show"),
         ("render -o a.png --stats a.png", "same file"),
         (
             "render -o a_#.png --frames 0..3 --share --stats s.json",

@@ -47,7 +47,8 @@ pub struct ImportArgs {
     #[arg(long, help_heading = "Scene files", value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     max_texture_size: Option<u32>,
 
-    /// Most vertices of all meshes together, morph targets included [default: 67108864]
+    /// Most vertices of all meshes together, morph targets included, and six times as many indices
+    /// [default: 67108864]
     #[arg(long, help_heading = "Scene files", value_name = "N")]
     max_vertices: Option<u64>,
 
@@ -55,7 +56,7 @@ pub struct ImportArgs {
     #[arg(long, help_heading = "Scene files", value_name = "N")]
     max_instances: Option<u64>,
 
-    /// Most triangles, each counted once per instance [default: 4294967296]
+    /// Most triangles, lines and points, each counted once per instance [default: 4294967296]
     #[arg(long, help_heading = "Scene files", value_name = "N")]
     max_triangles: Option<u64>,
 

@@ -17,12 +17,22 @@ use super::sharing::Part;
 /// The name that means standard output.
 const STDOUT: &str = "-";
 
+/// The help of a setting that [`Args::settings`] switches on.
+fn on_by_default(arg: clap::Arg) -> clap::Arg {
+    let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
+    arg.help(help.replace(
+        "[default: false]",
+        "Whatever a settings file says [default: true]",
+    ))
+}
+
 /// Arguments of `foveal render`.
 #[derive(Debug, clap::Args)]
+#[command(mut_arg("force-rate", on_by_default))]
 pub(crate) struct Args {
     /// A glTF 2.0 file (.gltf or .glb), a mesh (.obj or .ply), a generated scene (demo,
     /// demo:INSTANCES, materials, materials2, cornell, materials-grid, alpha, lobes, yard), or -: a
-    /// .glb on standard input
+    /// .glb or PLY file on standard input
     #[arg(default_value = scene_source::DEFAULT_SCENE)]
     pub(super) scene: String,
 
@@ -202,6 +212,9 @@ impl Args {
         if self.output.len() != usize::from(file.is_some()) + usize::from(shown.is_some()) {
             return usage("--output names one picture, and at most one way to show it");
         }
+        if shown.is_some() && self.settings.gives("show") {
+            return usage("--output and --show both say how eyes are shown: give one of them");
+        }
         if file.is_none() && self.video.is_none() {
             return usage(
                 "--output says how both eyes are shown; name a picture too: --output FILE.png",
@@ -292,7 +305,7 @@ impl Args {
 #[cfg(test)]
 mod tests {
     use super::Args;
-    use clap::Parser;
+    use clap::{CommandFactory, Parser};
 
     #[derive(Parser)]
     struct Command {
@@ -312,5 +325,15 @@ mod tests {
         assert!(forced(&[]));
         assert!(forced(&["--force-rate", "true"]));
         assert!(!forced(&["--force-rate", "false"]));
+    }
+
+    #[test]
+    fn the_help_names_the_default_of_what_is_switched_on() {
+        let command = Command::command();
+        let flag = command
+            .get_arguments()
+            .find(|arg| arg.get_id() == "force-rate");
+        let help = flag.and_then(clap::Arg::get_help).unwrap().to_string();
+        assert!(help.ends_with("[default: true]"), "{help}");
     }
 }

@@ -189,9 +189,9 @@ settings! {
         /// uhd-27, quest-3, vision-pro, phone, degrees across, or WIDTHxDISTANCE in metres.
         display => display: Display = Display::Camera, "Display", Kind::Text;
         /// Quality in JOD at which coarse shading aims: 10 is no visible difference from full
-        /// shading, 9 one that 75 % of observers would see. Lower it for speed. Pictures meet
-        /// the default, 9.5, on average; the hardest that are known come to 8.9. In motion, with
-        /// history, videos are measured at 9.0 to 10.
+        /// shading, 9 one that 75 % of observers would see. Lower it for speed, down to 9.1: blocks
+        /// grow no further below. Pictures meet the default, 9.5, on average; the hardest that are
+        /// known come to 8.9. In motion, with history, videos are measured at 9.0 to 10.
         quality => quality_jod: f32 = 9.5, "Quality", Kind::Number { least: 5.0, most: 10.0 };
         /// Point that the eye looks at, as fractions of the picture from its top left corner.
         /// The default is the centre.

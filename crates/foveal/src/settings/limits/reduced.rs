@@ -70,8 +70,7 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
         None => Ok(()),
         Some((name, _, only)) => Err(Error::Setting {
             name,
-            value: "what needs storage buffers, compute shaders or depth that can be read, which this device has not"
-                .to_owned(),
+            value: "beyond the reduced renderer, which draws on this device".to_owned(),
             expected: only,
         }),
     }
@@ -136,7 +135,10 @@ mod tests {
         settings.validate(&limits).expect("in the reduced set");
         settings.shading.mode = Shading::Coarse;
         let refused = settings.validate(&limits).expect_err("needs compute");
-        assert!(refused.to_string().contains("shading"), "{refused}");
+        assert_eq!(
+            refused.to_string(),
+            "the setting shading is beyond the reduced renderer, which draws on this device; it must be full"
+        );
         settings.shading.mode = Shading::Full;
         settings.lighting.shadow_atlas = 2048;
         for (shadows, is_drawn) in [(Shadows::Soft, true), (Shadows::Contact, false)] {
