@@ -14,6 +14,8 @@ mod samples;
 #[cfg(test)]
 pub(crate) mod twin;
 #[cfg(test)]
+mod twin_tests;
+#[cfg(test)]
 mod unlit_tests;
 mod variable;
 #[cfg(test)]
