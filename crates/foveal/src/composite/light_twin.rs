@@ -188,16 +188,17 @@ impl<'a> Inputs<'a> {
         (self.samples[level as usize][self.index(block, level)][3] + 0.5) as u32 - 1
     }
 
-    /// `corners_of` in `shading/coarse/block_light.wgsl`, without those that do not count.
-    fn corners(&self, block: UVec2, level: u32, s: &Surface) -> Vec<Vec3> {
-        let corner = |corner: u32| {
-            let end = UVec2::new(corner & 1, corner >> 1) * ((1 << level) - 1);
-            let texel = ((block << level) + end).min(self.size - 1);
+    /// `rim_of` in `shading/coarse/block_light.wgsl`, without those that do not count.
+    fn rim(&self, block: UVec2, level: u32, s: &Surface) -> Vec<Vec3> {
+        let place = |quarters: [u32; 2]| {
+            let within = (UVec2::from(quarters) * ((1 << level) - 1) + 2) / 4;
+            let texel = ((block << level) + within).min(self.size - 1);
             let offset = self.surface(texel).position - s.position;
             let off = s.vertex_normal.dot(offset).abs() / offset.length().max(1e-30);
             (self.depth(texel) > 0.0 && off <= MOST_OFF_PLANE).then_some(offset)
         };
-        (0..4 * u32::from(level > 0)).filter_map(corner).collect()
+        let places = [[1, 0], [4, 1], [3, 4], [0, 3]].into_iter();
+        places.filter(|_| level > 0).filter_map(place).collect()
     }
 
     /// `light_block` in `shading/coarse/block_light.wgsl`.
@@ -224,10 +225,10 @@ impl<'a> Inputs<'a> {
         }
         let v = to_eye(self.camera, s.position);
         let model = self.settings.lighting.model;
-        let corners = self.corners(block, level, &s);
+        let rim = self.rim(block, level, &s);
         let lit = light_surface_with(self.scene, self.lights, model, (&s, v), &|(n, l), s| {
             self.lookup.as_ref().map_or(ALL_ARRIVES, |lookup| {
-                lookup.light_arriving(n, l, (s.position, s.vertex_normal), &corners)
+                lookup.light_arriving(n, l, (s.position, s.vertex_normal), &rim)
             })
         });
         let lamps = scattered(&s) * lit.diffuse + lit.specular;

@@ -144,12 +144,12 @@ struct ShadowPlace {
     at: vec2f,
     depth: f32,
     softness: f32,
-    // The same of the four pixels at the corners of the sample's block: texels across and down, depths,
-    // and whether they count, by 1.
-    corners_x: vec4f,
-    corners_y: vec4f,
-    corner_depths: vec4f,
-    corners_count: vec4f,
+    // The same of four pixels at the rim of the sample's block: texels across and down, depths, and
+    // whether they count, by 1.
+    rim_x: vec4f,
+    rim_y: vec4f,
+    rim_depths: vec4f,
+    rim_counts: vec4f,
 }
 
 const UNSHADOWED: ShadowPlace = ShadowPlace(
@@ -163,8 +163,8 @@ const UNSHADOWED: ShadowPlace = ShadowPlace(
     vec4f(0.0),
 );
 
-// How far along an axis a block's corners lie from its sample.
-fn corners_along(axis: vec3f, block: Block) -> vec4f {
+// How far along an axis the pixels at a block's rim lie from its sample.
+fn rim_along(axis: vec3f, block: Block) -> vec4f {
     return axis.x * block.x + axis.y * block.y + axis.z * block.z;
 }
 
@@ -197,9 +197,9 @@ fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, bl
         return UNSHADOWED;
     }
     let softness = pyramid_softness(near, tangent, tile.side, max(-dot(normal, from_light), 0.0));
-    let z = at.z + corners_along(along, block);
-    let x = (at.x + corners_along(across, block)) / (z * tangent);
-    let y = (at.y + corners_along(up, block)) / (z * tangent);
+    let z = at.z + rim_along(along, block);
+    let x = (at.x + rim_along(across, block)) / (z * tangent);
+    let y = (at.y + rim_along(up, block)) / (z * tangent);
     let is_inside = (z > vec4f(near)) & (max(abs(x), abs(y)) <= vec4f(1.0));
     let half_inner = 0.5 * tile.side - SHADOW_BORDER;
     return ShadowPlace(
@@ -243,8 +243,8 @@ fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, bloc
         let depth = (span.x - dot(light.direction, moved)) * span.y;
         // Metres between two depths, times the tangent of half the angle that the light fills.
         let softness = frame.sun_tangent / (span.y * texel_m);
-        let x = at.x + corners_along(axes[0], block) / texel_m;
-        let y = at.y + corners_along(axes[1], block) / texel_m;
+        let x = at.x + rim_along(axes[0], block) / texel_m;
+        let y = at.y + rim_along(axes[1], block) / texel_m;
         let half_inner = vec4f(0.5 * tile.side - 1.0);
         return ShadowPlace(
             tile,
@@ -253,7 +253,7 @@ fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, bloc
             softness,
             0.5 * tile.side + x,
             0.5 * tile.side - y,
-            depth - corners_along(light.direction, block) * span.y,
+            depth - rim_along(light.direction, block) * span.y,
             select(vec4f(0.0), block.counts, max(abs(x), abs(y)) <= half_inner),
         );
     }
@@ -262,7 +262,7 @@ fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, bloc
 
 #ifdef LIGHT
 // A comparison, blended between four texels.
-fn corner_passing(tile: ShadowTile, at: vec2f, depth: f32) -> f32 {
+fn rim_passing(tile: ShadowTile, at: vec2f, depth: f32) -> f32 {
     let texel = 1.0 / f32(textureDimensions(shadow_atlas).x);
     let inside = clamp(at, vec2f(1.0), vec2f(tile.side - 1.0)) - 0.5;
     let first = min(floor(inside), vec2f(tile.side - 2.0));
@@ -272,16 +272,16 @@ fn corner_passing(tile: ShadowTile, at: vec2f, depth: f32) -> f32 {
     return mix(mix(q.w, q.z, f.x), mix(q.x, q.y, f.x), f.y);
 }
 
-// Part of a light's rays that reach a sample's block: at those of its corners that count. What is looked
-// up there the pixels there would look up themselves, as shadow/mask.rs expects of lookups.
+// Part of a light's rays that reach a sample's block: at those pixels at its rim that count. What is
+// looked up there they would look up themselves, as shadow/mask.rs expects of lookups.
 fn block_passing(place: ShadowPlace) -> f32 {
     let passing = vec4f(
-        corner_passing(place.tile, vec2f(place.corners_x.x, place.corners_y.x), place.corner_depths.x),
-        corner_passing(place.tile, vec2f(place.corners_x.y, place.corners_y.y), place.corner_depths.y),
-        corner_passing(place.tile, vec2f(place.corners_x.z, place.corners_y.z), place.corner_depths.z),
-        corner_passing(place.tile, vec2f(place.corners_x.w, place.corners_y.w), place.corner_depths.w),
+        rim_passing(place.tile, vec2f(place.rim_x.x, place.rim_y.x), place.rim_depths.x),
+        rim_passing(place.tile, vec2f(place.rim_x.y, place.rim_y.y), place.rim_depths.y),
+        rim_passing(place.tile, vec2f(place.rim_x.z, place.rim_y.z), place.rim_depths.z),
+        rim_passing(place.tile, vec2f(place.rim_x.w, place.rim_y.w), place.rim_depths.w),
     );
-    return dot(passing, place.corners_count) / max(dot(place.corners_count, vec4f(1.0)), 1.0);
+    return dot(passing, place.rim_counts) / max(dot(place.rim_counts, vec4f(1.0)), 1.0);
 }
 #endif
 
@@ -291,7 +291,7 @@ fn arriving_at(place: ShadowPlace) -> Arriving {
     }
     let part = shadow_passing(place.tile, place.at, place.depth, place.softness);
 #ifdef LIGHT
-    if any(place.corners_count > vec4f(0.0)) {
+    if any(place.rim_counts > vec4f(0.0)) {
         let over_block = block_passing(place);
         return Arriving(part, over_block * (1.0 - over_block));
     }

@@ -29,13 +29,13 @@ struct Place {
     at: Vec2,
     depth: f32,
     softness: f32,
-    /// Place and depth of each corner that counts.
-    corners: Vec<(Vec2, f32)>,
+    /// Place and depth of each pixel at the rim that counts.
+    rim: Vec<(Vec2, f32)>,
 }
 
-/// `Block` in `shared/light.wgsl`: what the pixels at a block's corners show, those that count, from
-/// the sample's place.
-pub(crate) type Corners = [Vec3];
+/// `Block` in `shared/light.wgsl`: what the pixels at a block's rim show, those that count, from the
+/// sample's place.
+pub(crate) type Rim = [Vec3];
 
 fn tile_of(word: u32) -> Option<ShadowTile> {
     (word != 0).then(|| ShadowTile {
@@ -176,20 +176,19 @@ impl Lookup {
         index: usize,
         light: &LightUniform,
         surface: (Vec3, Vec3),
-        corners: &Corners,
+        rim: &Rim,
     ) -> Arriving {
         let first = index * ROWS;
         let place = if light.is_directional() {
-            self.place_from_sun(first, Vec3::from(light.direction), surface, corners)
+            self.place_from_sun(first, Vec3::from(light.direction), surface, rim)
         } else {
-            self.place_from_point(first, light, surface, corners)
+            self.place_from_point(first, light, surface, rim)
         };
         let Some(place) = place else {
             return ALL_ARRIVES;
         };
         let passing = |(at, depth): &(Vec2, f32)| self.compared_at(&place.tile, *at, *depth);
-        let over_block =
-            place.corners.iter().map(passing).sum::<f32>() / place.corners.len().max(1) as f32;
+        let over_block = place.rim.iter().map(passing).sum::<f32>() / place.rim.len().max(1) as f32;
         Arriving {
             part: self.passing(&place.tile, place.at, place.depth, place.softness),
             variance: over_block * (1.0 - over_block),
@@ -201,7 +200,7 @@ impl Lookup {
         first: usize,
         light: &LightUniform,
         (position, normal): (Vec3, Vec3),
-        corners: &Corners,
+        rim: &Rim,
     ) -> Option<Place> {
         let from_light = position - Vec3::from(light.position);
         let near = super::plan::near_of(light);
@@ -223,19 +222,19 @@ impl Lookup {
         }
         let place = Vec2::new(at.x, -at.y) * (0.5 * inner / (at.z * tangent));
         let height = f32::max(-normal.dot(from_light), 0.0);
-        let seen = |corner: &Vec3| {
-            let p = at + Vec3::from(axes.map(|axis| axis.dot(*corner)));
+        let seen = |offset: &Vec3| {
+            let p = at + Vec3::from(axes.map(|axis| axis.dot(*offset)));
             let in_tile = Vec2::new(p.x, -p.y) / (p.z * tangent);
             let is_inside = p.z > near && in_tile.abs().max_element() <= 1.0;
             let texel = 0.5 * tile.side as f32 + 0.5 * inner * in_tile;
             is_inside.then_some((texel, near / p.z))
         };
-        let corners = corners.iter().filter_map(seen).collect();
+        let rim = rim.iter().filter_map(seen).collect();
         Some(Place {
             at: place + 0.5 * tile.side as f32,
             depth: near / at.z,
             softness: self.pyramid_softness(near, tangent, inner, height),
-            corners,
+            rim,
             tile,
         })
     }
@@ -245,7 +244,7 @@ impl Lookup {
         first: usize,
         direction: Vec3,
         (position, normal): (Vec3, Vec3),
-        corners: &Corners,
+        rim: &Rim,
     ) -> Option<Place> {
         let cosine = -normal.dot(direction);
         let (tile, center, texel_m) = self.cascade_at(first, direction, position)?;
@@ -254,18 +253,18 @@ impl Lookup {
         let at = (on_plane(direction, moved) - center) / texel_m;
         let half = 0.5 * tile.side as f32;
         let depth = (end - direction.dot(moved)) * per_length;
-        let seen = |corner: &Vec3| {
-            let p = at + on_plane(direction, *corner) / texel_m;
+        let seen = |offset: &Vec3| {
+            let p = at + on_plane(direction, *offset) / texel_m;
             let texel = Vec2::new(p.x, -p.y) + half;
             let is_inside = p.abs().max_element() <= half - 1.0;
-            is_inside.then_some((texel, depth - direction.dot(*corner) * per_length))
+            is_inside.then_some((texel, depth - direction.dot(*offset) * per_length))
         };
-        let corners = corners.iter().filter_map(seen).collect();
+        let rim = rim.iter().filter_map(seen).collect();
         Some(Place {
             at: Vec2::new(at.x, -at.y) + half,
             depth,
             softness: self.settings.sun_tangent / (per_length * texel_m),
-            corners,
+            rim,
             tile,
         })
     }

@@ -34,8 +34,8 @@ struct Lights {
     items: array<Light>,
 }
 
-// The block of pixels that a sample stands for, by the pixels at its corners: what they show, from
-// the sample's place, in metres of world space, and by 1 which of them count: those that show the
+// The block of pixels that a sample stands for, by four pixels at its rim: what they show, from the
+// sample's place, in metres of world space, and by 1 which of them count: those that show the
 // sample's surface. A pixel has none.
 struct Block {
     x: vec4f,

@@ -5,6 +5,7 @@
 #import shading/input.wgsl
 #import shared/blocks.wgsl
 #import shared/frame.wgsl
+#import shared/light.wgsl
 #import shared/lighting.wgsl
 #import shared/surface.wgsl
 #import shared/environment.wgsl
@@ -56,25 +57,29 @@ fn unit_or(direction: vec3f, other: vec3f) -> vec3f {
     return select(other, direction / max(size, 1e-30), size > 1e-30);
 }
 
-// Sine of the angle by which a corner's place may lie off the sample's plane and count as the same
+// Sine of the angle by which a place at a block's rim may lie off the sample's plane and count as the same
 // surface.
 const MOST_OFF_PLANE: f32 = 0.3;
 
-// A block's corner: what it shows, from a sample's surface, and in w whether that counts, by 1.
-fn corner_of(block: vec2u, level: u32, corner: vec2u, s: Surface) -> vec4f {
-    let last = (block << vec2u(level)) + corner * ((1u << level) - 1u);
-    let texel = min(last, picture_of(block << vec2u(level)).end - 1u);
+// A place at a block's rim, in quarters of its side: what is seen there, from a sample's surface, and
+// in w whether that counts, by 1.
+fn rim_of(block: vec2u, level: u32, quarters: vec2u, s: Surface) -> vec4f {
+    let first = block << vec2u(level);
+    let within = (quarters * ((1u << level) - 1u) + 2u) >> vec2u(2u);
+    let texel = min(first + within, picture_of(first).end - 1u);
     let depth = gbuffer_depth_at(texel);
     let offset = world_position(vec2f(texel) + 0.5, view_distance(max(depth, 1e-20))) - s.position;
     let is_same = depth > 0.0 && abs(dot(s.vertex_normal, offset)) <= MOST_OFF_PLANE * length(offset);
     return select(vec4f(0.0), vec4f(offset, 1.0), is_same);
 }
 
-fn corners_of(block: vec2u, level: u32, s: Surface) -> Block {
-    let a = corner_of(block, level, vec2u(0u, 0u), s);
-    let b = corner_of(block, level, vec2u(1u, 0u), s);
-    let c = corner_of(block, level, vec2u(0u, 1u), s);
-    let d = corner_of(block, level, vec2u(1u, 1u), s);
+// Four places that lie together with the samples in the middle of blocks in as many columns, and rows,
+// as there are quarters: narrow strips of shadow find no gap.
+fn block_of(block: vec2u, level: u32, s: Surface) -> Block {
+    let a = rim_of(block, level, vec2u(1u, 0u), s);
+    let b = rim_of(block, level, vec2u(4u, 1u), s);
+    let c = rim_of(block, level, vec2u(3u, 4u), s);
+    let d = rim_of(block, level, vec2u(0u, 3u), s);
     return Block(
         vec4f(a.x, b.x, c.x, d.x),
         vec4f(a.y, b.y, c.y, d.y),
@@ -103,11 +108,11 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
     if is_behind {
         return LitBlock(vec4f(background(look), alpha), vec4u(0u));
     }
-    var corners = PIXEL;
+    var stands_for = PIXEL;
     if level > 0u {
-        corners = corners_of(block, level, s);
+        stands_for = block_of(block, level, s);
     }
-    let lit = light_surface(s, v, look, pixel, distance, corners);
+    let lit = light_surface(s, v, look, pixel, distance, stands_for);
     let direction = unit_or(lit.direction, s.normal);
     let specular_direction = unit_or(lit.specular_direction, s.normal);
     let together = saturate(length(lit.specular_direction) / max(luminance(lit.specular), 1e-30));
