@@ -39,6 +39,8 @@ mod records;
 mod sizes_tests;
 mod stage;
 #[cfg(test)]
+mod strips_tests;
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod twin;
