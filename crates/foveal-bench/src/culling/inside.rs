@@ -53,6 +53,9 @@ pub(super) fn places(occluders: &Occluders) -> Vec<Vec3> {
                 places.push(eye);
             }
         }
+        if places.len() == PLACES {
+            break;
+        }
         apart_m *= CLOSER;
     }
     places
