@@ -30,7 +30,7 @@ const LEAST_WEIGHT: f32 = 0.02;
 const MOST_APART: f32 = 0.1;
 // Part of the variance within a sample's block that counts as one between samples. Found by
 // measurement.
-const WITHIN_A_BLOCK: f32 = 0.1;
+const WITHIN_A_BLOCK: f32 = 0.175;
 
 // Change of depth per texel along an axis: of the two sides of a texel the one that changes less.
 fn depth_slope(texel: vec2u, axis: u32, depth: f32) -> f32 {

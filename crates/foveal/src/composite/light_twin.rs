@@ -1,5 +1,4 @@
-//! The twin of samples' light and of the composite that puts pixels' surfaces into it: from the
-//! G-buffer and the lights.
+//! The twin of samples' light and of the composite that puts pixels' surfaces into it.
 
 use foveal_generate as generate;
 use foveal_scene::{Camera, Projection, Scene};
@@ -29,7 +28,7 @@ const ON_PLANE: f32 = 0.2;
 const LEAST_ALIKE: f32 = 0.005;
 const LEAST_WEIGHT: f32 = 0.02;
 const MOST_APART: f32 = 0.1;
-const WITHIN_A_BLOCK: f32 = 0.1;
+const WITHIN_A_BLOCK: f32 = 0.175;
 const DARK: f32 = 0.05;
 
 /// As in `shading/coarse/light.wgsl`.
@@ -190,15 +189,16 @@ impl<'a> Inputs<'a> {
 
     /// `rim_of` in `shading/coarse/block_light.wgsl`, without those that do not count.
     fn rim(&self, block: UVec2, level: u32, s: &Surface) -> Vec<Vec3> {
-        let place = |quarters: [u32; 2]| {
-            let within = (UVec2::from(quarters) * ((1 << level) - 1) + 2) / 4;
+        let place = |quarters: UVec2| {
+            let within = (quarters * ((1 << level) - 1) + 2) / 4;
             let texel = ((block << level) + within).min(self.size - 1);
             let offset = self.surface(texel).position - s.position;
             let off = s.vertex_normal.dot(offset).abs() / offset.length().max(1e-30);
             (self.depth(texel) > 0.0 && off <= MOST_OFF_PLANE).then_some(offset)
         };
-        let places = [[1, 0], [4, 1], [3, 4], [0, 3]].into_iter();
-        places.filter(|_| level > 0).filter_map(place).collect()
+        let turned = |n| [[n, 0], [4, n], [4 - n, 4], [0, 4 - n]].map(UVec2::from);
+        let places = [1, 3].into_iter().filter(|_| level > 0);
+        places.flat_map(turned).filter_map(place).collect()
     }
 
     /// `light_block` in `shading/coarse/block_light.wgsl`.

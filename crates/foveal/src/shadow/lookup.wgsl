@@ -137,35 +137,68 @@ fn shadow_near(range: f32) -> f32 {
     return clamp(range * 1e-3, 1e-4, 0.02);
 }
 
-// Where a light's rays to a surface are looked up: as `shadow_passing` takes them. Without a tile
-// they pass.
+// Where rays to four pixels at the rim of a sample's block are looked up: texels across and down, depths,
+// and whether they count, by 1.
+struct RimPlaces {
+    x: vec4f,
+    y: vec4f,
+    depths: vec4f,
+    counts: vec4f,
+}
+
+// Where a light's rays to a surface are looked up: as `shadow_passing` takes them, and to the pixels at
+// the rim of the sample's block. Without a tile they pass.
 struct ShadowPlace {
     tile: ShadowTile,
     at: vec2f,
     depth: f32,
     softness: f32,
-    // The same of four pixels at the rim of the sample's block: texels across and down, depths, and
-    // whether they count, by 1.
-    rim_x: vec4f,
-    rim_y: vec4f,
-    rim_depths: vec4f,
-    rim_counts: vec4f,
+    first: RimPlaces,
+    second: RimPlaces,
 }
 
+const NO_PLACES: RimPlaces = RimPlaces(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
 const UNSHADOWED: ShadowPlace = ShadowPlace(
     ShadowTile(vec2f(0.0), 0.0, false),
     vec2f(0.0),
     0.0,
     0.0,
-    vec4f(0.0),
-    vec4f(0.0),
-    vec4f(0.0),
-    vec4f(0.0),
+    NO_PLACES,
+    NO_PLACES,
 );
 
 // How far along an axis the pixels at a block's rim lie from its sample.
-fn rim_along(axis: vec3f, block: Block) -> vec4f {
-    return axis.x * block.x + axis.y * block.y + axis.z * block.z;
+fn rim_along(axis: vec3f, rim: Rim) -> vec4f {
+    return axis.x * rim.x + axis.y * rim.y + axis.z * rim.z;
+}
+
+// In a pyramid's tile; `at`: the sample's position, across, up and along.
+fn rim_in_pyramid(rim: Rim, axes: mat3x3f, at: vec3f, near: f32, tangent: f32, side: f32) -> RimPlaces {
+    let z = at.z + rim_along(axes[2], rim);
+    let x = (at.x + rim_along(axes[0], rim)) / (z * tangent);
+    let y = (at.y + rim_along(axes[1], rim)) / (z * tangent);
+    let is_inside = (z > vec4f(near)) & (max(abs(x), abs(y)) <= vec4f(1.0));
+    let half_inner = 0.5 * side - SHADOW_BORDER;
+    return RimPlaces(
+        0.5 * side + half_inner * x,
+        0.5 * side - half_inner * y,
+        near / z,
+        select(vec4f(0.0), rim.counts, is_inside),
+    );
+}
+
+// In a cascade's tile; `at`: the sample's place from its centre, across and up in texels, and its depth.
+// `steps`: depths per metre.
+fn rim_in_cascade(rim: Rim, axes: mat3x3f, at: vec3f, texel_m: f32, steps: f32, side: f32) -> RimPlaces {
+    let x = at.x + rim_along(axes[0], rim) / texel_m;
+    let y = at.y + rim_along(axes[1], rim) / texel_m;
+    let half_inner = vec4f(0.5 * side - 1.0);
+    return RimPlaces(
+        0.5 * side + x,
+        0.5 * side - y,
+        at.z - rim_along(axes[2], rim) * steps,
+        select(vec4f(0.0), rim.counts, max(abs(x), abs(y)) <= half_inner),
+    );
 }
 
 // Of a light that shines from a point: in a side of a cube around it, or, where its cone fits into
@@ -185,32 +218,26 @@ fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, bl
     }
     let of_cube = side_axes(side);
     let of_cone = axes_along(light.direction);
-    let across = select(of_cone[0], of_cube[0], is_cube);
-    let up = select(of_cone[1], of_cube[1], is_cube);
-    let along = select(of_cone[2], of_cube[2], is_cube);
+    let axes = mat3x3f(
+        select(of_cone[0], of_cube[0], is_cube),
+        select(of_cone[1], of_cube[1], is_cube),
+        select(of_cone[2], of_cube[2], is_cube),
+    );
     let near = shadow_near(light.range);
     let tangent = select(cone_tangent, 1.0, is_cube);
-    let texel_m = 2.0 * tangent * dot(along, from_light) / (tile.side - 2.0 * SHADOW_BORDER);
-    let moved = from_light + normal * shadow_offset(tile, texel_m, dot(along, normal));
-    let at = vec3f(dot(across, moved), dot(up, moved), dot(along, moved));
+    let texel_m = 2.0 * tangent * dot(axes[2], from_light) / (tile.side - 2.0 * SHADOW_BORDER);
+    let moved = from_light + normal * shadow_offset(tile, texel_m, dot(axes[2], normal));
+    let at = vec3f(dot(axes[0], moved), dot(axes[1], moved), dot(axes[2], moved));
     if at.z <= near {
         return UNSHADOWED;
     }
-    let softness = pyramid_softness(near, tangent, tile.side, max(-dot(normal, from_light), 0.0));
-    let z = at.z + rim_along(along, block);
-    let x = (at.x + rim_along(across, block)) / (z * tangent);
-    let y = (at.y + rim_along(up, block)) / (z * tangent);
-    let is_inside = (z > vec4f(near)) & (max(abs(x), abs(y)) <= vec4f(1.0));
-    let half_inner = 0.5 * tile.side - SHADOW_BORDER;
     return ShadowPlace(
         tile,
         pyramid_texel(at, tangent, tile.side),
         near / at.z,
-        softness,
-        0.5 * tile.side + half_inner * x,
-        0.5 * tile.side - half_inner * y,
-        near / z,
-        select(vec4f(0.0), block.counts, is_inside),
+        pyramid_softness(near, tangent, tile.side, max(-dot(normal, from_light), 0.0)),
+        rim_in_pyramid(block.first, axes, at, near, tangent, tile.side),
+        rim_in_pyramid(block.second, axes, at, near, tangent, tile.side),
     );
 }
 
@@ -243,18 +270,13 @@ fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, bloc
         let depth = (span.x - dot(light.direction, moved)) * span.y;
         // Metres between two depths, times the tangent of half the angle that the light fills.
         let softness = frame.sun_tangent / (span.y * texel_m);
-        let x = at.x + rim_along(axes[0], block) / texel_m;
-        let y = at.y + rim_along(axes[1], block) / texel_m;
-        let half_inner = vec4f(0.5 * tile.side - 1.0);
         return ShadowPlace(
             tile,
             0.5 * tile.side + vec2f(at.x, -at.y),
             depth,
             softness,
-            0.5 * tile.side + x,
-            0.5 * tile.side - y,
-            depth - rim_along(light.direction, block) * span.y,
-            select(vec4f(0.0), block.counts, max(abs(x), abs(y)) <= half_inner),
+            rim_in_cascade(block.first, axes, vec3f(at, depth), texel_m, span.y, tile.side),
+            rim_in_cascade(block.second, axes, vec3f(at, depth), texel_m, span.y, tile.side),
         );
     }
     return UNSHADOWED;
@@ -272,16 +294,23 @@ fn rim_passing(tile: ShadowTile, at: vec2f, depth: f32) -> f32 {
     return mix(mix(q.w, q.z, f.x), mix(q.x, q.y, f.x), f.y);
 }
 
-// Part of a light's rays that reach a sample's block: at those pixels at its rim that count. What is
-// looked up there they would look up themselves, as shadow/mask.rs expects of lookups.
-fn block_passing(place: ShadowPlace) -> f32 {
+// The largest difference within a block, as a variance. Found by measurement, as the part of it that
+// counts (composite/gather.wgsl): samples hold deviations up to what lights them, which is little in
+// shadow.
+const VARIANCE_OF_APART: f32 = 0.2;
+
+// By how much the part of a light's rays that reaches four pixels at a rim differs from the sample's where
+// it differs most. What is looked up there these pixels would look up themselves, as shadow/mask.rs expects
+// of lookups.
+fn rim_apart(tile: ShadowTile, places: RimPlaces, part: f32) -> f32 {
     let passing = vec4f(
-        rim_passing(place.tile, vec2f(place.rim_x.x, place.rim_y.x), place.rim_depths.x),
-        rim_passing(place.tile, vec2f(place.rim_x.y, place.rim_y.y), place.rim_depths.y),
-        rim_passing(place.tile, vec2f(place.rim_x.z, place.rim_y.z), place.rim_depths.z),
-        rim_passing(place.tile, vec2f(place.rim_x.w, place.rim_y.w), place.rim_depths.w),
+        rim_passing(tile, vec2f(places.x.x, places.y.x), places.depths.x),
+        rim_passing(tile, vec2f(places.x.y, places.y.y), places.depths.y),
+        rim_passing(tile, vec2f(places.x.z, places.y.z), places.depths.z),
+        rim_passing(tile, vec2f(places.x.w, places.y.w), places.depths.w),
     );
-    return dot(passing, place.rim_counts) / max(dot(place.rim_counts, vec4f(1.0)), 1.0);
+    let apart = abs(passing - part) * places.counts;
+    return max(max(apart.x, apart.y), max(apart.z, apart.w));
 }
 #endif
 
@@ -291,9 +320,12 @@ fn arriving_at(place: ShadowPlace) -> Arriving {
     }
     let part = shadow_passing(place.tile, place.at, place.depth, place.softness);
 #ifdef LIGHT
-    if any(place.rim_counts > vec4f(0.0)) {
-        let over_block = block_passing(place);
-        return Arriving(part, over_block * (1.0 - over_block));
+    if any(place.first.counts + place.second.counts > vec4f(0.0)) {
+        var apart = rim_apart(place.tile, place.first, part);
+        if BOTH_RIMS {
+            apart = max(apart, rim_apart(place.tile, place.second, part));
+        }
+        return Arriving(part, VARIANCE_OF_APART * apart);
     }
 #endif
     return Arriving(part, 0.0);

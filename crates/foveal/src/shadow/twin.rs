@@ -46,6 +46,8 @@ fn tile_of(word: u32) -> Option<ShadowTile> {
 }
 
 /// Places that `shadow/contact.wgsl` looks at, and compares.
+/// Of `shadow/lookup.wgsl`.
+const VARIANCE_OF_APART: f32 = 0.2;
 const SEARCHED: usize = 16;
 const COMPARED: usize = 24;
 
@@ -188,10 +190,11 @@ impl Lookup {
             return ALL_ARRIVES;
         };
         let passing = |(at, depth): &(Vec2, f32)| self.compared_at(&place.tile, *at, *depth);
-        let over_block = place.rim.iter().map(passing).sum::<f32>() / place.rim.len().max(1) as f32;
+        let part = self.passing(&place.tile, place.at, place.depth, place.softness);
+        let apart = place.rim.iter().map(|at| (passing(at) - part).abs());
         Arriving {
-            part: self.passing(&place.tile, place.at, place.depth, place.softness),
-            variance: over_block * (1.0 - over_block),
+            part,
+            variance: VARIANCE_OF_APART * apart.fold(0.0, f32::max),
         }
     }
 

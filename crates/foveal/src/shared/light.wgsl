@@ -34,23 +34,33 @@ struct Lights {
     items: array<Light>,
 }
 
-// The block of pixels that a sample stands for, by four pixels at its rim: what they show, from the
-// sample's place, in metres of world space, and by 1 which of them count: those that show the
-// sample's surface. A pixel has none.
-struct Block {
+// Four pixels at the rim of the block that a sample stands for: what they show, from the sample's place,
+// in metres of world space, and by 1 which of them count: those that show the sample's surface.
+struct Rim {
     x: vec4f,
     y: vec4f,
     z: vec4f,
     counts: vec4f,
 }
 
-const PIXEL: Block = Block(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
+// The block of pixels that a sample stands for, by eight pixels at its rim. A pixel has none that count.
+struct Block {
+    first: Rim,
+    second: Rim,
+}
+
+// Whether all eight are looked at, or the first four.
+override BOTH_RIMS: bool = true;
+
+const NO_RIM: Rim = Rim(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
+const PIXEL: Block = Block(NO_RIM, NO_RIM);
 
 // What of a light's rays arrives where it is looked at.
 struct Arriving {
     // Part of them that reaches the sample.
     part: f32,
-    // Variance of that part within the sample's block.
+    // What counts as its variance within the sample's block, by how much it differs at the pixel of the rim
+    // where it differs most.
     variance: f32,
 }
 

@@ -73,19 +73,29 @@ fn rim_of(block: vec2u, level: u32, quarters: vec2u, s: Surface) -> vec4f {
     return select(vec4f(0.0), vec4f(offset, 1.0), is_same);
 }
 
-// Four places that lie together with the samples in the middle of blocks in as many columns, and rows,
-// as there are quarters: narrow strips of shadow find no gap.
-fn block_of(block: vec2u, level: u32, s: Surface) -> Block {
-    let a = rim_of(block, level, vec2u(1u, 0u), s);
-    let b = rim_of(block, level, vec2u(4u, 1u), s);
-    let c = rim_of(block, level, vec2u(3u, 4u), s);
-    let d = rim_of(block, level, vec2u(0u, 3u), s);
-    return Block(
+// Four places at a block's rim, one on each side: `quarters` along the upper one, and as it is turned.
+// Together with the samples in the middle of blocks they lie in as many columns, and rows, as there are
+// quarters.
+fn four_of(block: vec2u, level: u32, quarters: u32, s: Surface) -> Rim {
+    let left = 4u - quarters;
+    let a = rim_of(block, level, vec2u(quarters, 0u), s);
+    let b = rim_of(block, level, vec2u(4u, quarters), s);
+    let c = rim_of(block, level, vec2u(left, 4u), s);
+    let d = rim_of(block, level, vec2u(0u, left), s);
+    return Rim(
         vec4f(a.x, b.x, c.x, d.x),
         vec4f(a.y, b.y, c.y, d.y),
         vec4f(a.z, b.z, c.z, d.z),
         vec4f(a.w, b.w, c.w, d.w),
     );
+}
+
+fn block_of(block: vec2u, level: u32, s: Surface) -> Block {
+    var second = NO_RIM;
+    if BOTH_RIMS {
+        second = four_of(block, level, 3u, s);
+    }
+    return Block(four_of(block, level, 1u, s), second);
 }
 
 fn light_block(block: vec2u, level: u32) -> LitBlock {

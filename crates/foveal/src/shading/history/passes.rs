@@ -136,6 +136,10 @@ impl HistoryPasses {
         let parameters = uniform();
         let tiles = [parameters, write, write, written(TILE_FORMAT)];
         let environment = environment_constants(settings);
+        // Most samples are single pixels, and the others' pixels are shaded in turn: eight places cost
+        // more than they show.
+        let mut of_samples = lighting_constants(settings);
+        of_samples.push(("BOTH_RIMS", 0.0));
         Self {
             keep: pass(
                 "kept tiles",
@@ -176,7 +180,7 @@ impl HistoryPasses {
                 "shade_samples",
                 Some(input),
                 &[read, read, light, radiance, write],
-                &lighting_constants(settings),
+                &of_samples,
             ),
             gather: pass(
                 "gathering light",
