@@ -138,6 +138,58 @@ fn a_picture_of_rates_that_is_not_read_is_named() {
 }
 
 #[test]
+fn flags_of_eyes_and_sub_samples_that_have_no_effect_are_named() {
+    let folder = folder();
+    let said = |words: &[&str]| {
+        let words = [&["render", "cornell", "-o", "a.png"], words, &SIZE].concat();
+        stderr(&succeed(folder.path(), &words))
+    };
+    for (words, warning) in [
+        (
+            &["--show", "anaglyph"][..],
+            "--show has no effect: there is one eye",
+        ),
+        (&["-o", "headset"], "--output headset has no effect"),
+        (
+            &["--ipd", "0.1", "--lens", "dk1"],
+            "--lens has no effect: there is one eye",
+        ),
+        (
+            &["--stereo", "two-pass", "--lens", "dk1"],
+            "--lens has no effect: it is for --show headset",
+        ),
+        (
+            &[
+                "--stereo=two-pass",
+                "--convergence=1",
+                "--eye-tangents=-1,1,-1,1,-1,1,-1,1",
+            ],
+            "--convergence has no effect",
+        ),
+        (
+            &["--samples", "9"],
+            "--samples has no effect: it is for --aa ssaa or msaa",
+        ),
+        (
+            &["--aa", "ssaa", "--edge-test", "paper"],
+            "--edge-test has no effect",
+        ),
+    ] {
+        let said = said(words);
+        assert!(said.contains(&format!("warning: {warning}")), "{said}");
+    }
+    for words in [
+        &["--show", "flat"][..],
+        &["--stereo", "two-pass", "-o", "anaglyph"],
+        &["--stereo=two-pass", "--show=headset", "--lens=dk1"],
+        &["--aa", "msaa", "--samples", "9", "--edge-test", "paper"],
+    ] {
+        let said = said(words);
+        assert!(!said.contains("has no effect"), "{said}");
+    }
+}
+
+#[test]
 fn standard_output_takes_the_file_s_bytes() {
     let folder = folder();
     let here = folder.path();

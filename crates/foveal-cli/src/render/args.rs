@@ -170,7 +170,7 @@ impl FrameArgs {
 
 impl Args {
     /// The file to write, and what else `--output` names.
-    fn outputs(&self) -> (Option<&Path>, Option<&str>) {
+    pub(super) fn outputs(&self) -> (Option<&Path>, Option<&str>) {
         let names = foveal::variant_names::<foveal::Output>();
         let is_name = |output: &&PathBuf| names.iter().any(|name| output.as_os_str() == *name);
         let file = self.output.iter().find(|output| !is_name(output));

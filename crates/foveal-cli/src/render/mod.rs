@@ -9,6 +9,7 @@ mod frame_files;
 mod sharing;
 mod stats;
 mod summary;
+mod without_effect;
 
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -96,6 +97,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
                 "--rate-image is not read: it is for --rate image with a --shading that has rates",
             );
         }
+        let warnings = args.without_effect(&settings);
+        warnings.iter().for_each(|warning| console::warn(warning));
     }
 
     let mut load_ms = Vec::new();
