@@ -26,13 +26,17 @@ fn without_adapter(backend: Option<&str>) -> String {
 /// Opens the adapter that `wanted` names, or the most capable one. Where that has OpenGL alone, a
 /// warning says what is missing.
 pub fn open(wanted: Option<&str>) -> anyhow::Result<Gpu> {
+    let gpu = open_quietly(wanted)?;
+    if gpu.is_reduced() {
+        console::warn(&reduced(&gpu.adapter_stats()));
+    }
+    Ok(gpu)
+}
+
+/// As [`open`], without the warning.
+pub fn open_quietly(wanted: Option<&str>) -> anyhow::Result<Gpu> {
     match pollster::block_on(Gpu::open(wanted)) {
-        Ok(gpu) => {
-            if gpu.is_reduced() {
-                console::warn(&reduced(&gpu.adapter_stats()));
-            }
-            Ok(gpu)
-        }
+        Ok(gpu) => Ok(gpu),
         Err(foveal::Error::NoAdapter { .. }) if pollster::block_on(Gpu::adapters()).is_empty() => {
             bail!(install_a_driver())
         }

@@ -251,9 +251,12 @@ fn prepare(
     };
     // Fails before the scene is there where the size is beyond the device: the thread then ends
     // with the program.
-    let gpu = timed(&mut device_ms, "device", || {
-        gpu::open(args.adapter.as_deref())
-    })?;
+    let open = if args.quiet {
+        gpu::open_quietly
+    } else {
+        gpu::open
+    };
+    let gpu = timed(&mut device_ms, "device", || open(args.adapter.as_deref()))?;
     if args.import.texture_flag().is_some() && !args.quiet {
         gpu::check_blocks(&gpu);
     }
