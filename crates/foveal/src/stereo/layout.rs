@@ -12,15 +12,16 @@ pub(crate) struct EyeLayout {
     /// Width of one eye's picture in pixels.
     pub(crate) width: u32,
     pub(crate) height: u32,
-    /// First column of the right eye's picture: the width, or more where coarse blocks are not to
-    /// span both.
+    /// First column of the right eye's picture: the width, or more where no quad of 2 x 2 pixels, and
+    /// no coarse block, is to span both.
     pub(crate) stride: u32,
 }
 
 impl EyeLayout {
     pub(crate) fn of(settings: &Settings) -> Self {
         let coarsest = match settings.shading.mode {
-            Shading::Full => 0,
+            // Devices find mip levels by quads: each eye's lie as those of one eye do.
+            Shading::Full => 1,
             // Samples stand for 4 x 4 pixels at most, and every fourth quad across is probed.
             Shading::Variable => 3,
             // The rate map's cells are 2 x 2 pixels at least.

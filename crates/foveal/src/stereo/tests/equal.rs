@@ -126,6 +126,31 @@ fn two_eyes_in_one_place_see_what_one_eye_sees() {
 }
 
 #[test]
+fn the_right_eye_sees_textures_as_one_eye_does_at_odd_widths() {
+    // Devices find mip levels by quads of 2 x 2 texels.
+    let scene = generate::alpha();
+    let camera = &scene.cameras[0];
+    for aa in [Antialiasing::None, Antialiasing::Msaa] {
+        let mono = small(151, 101).with(|s| {
+            s.antialiasing.mode = aa;
+            s.antialiasing.pattern = SamplePattern::Rotated;
+        });
+        let one: Vec<[u8; 4]> =
+            bytemuck::pod_collect_to_vec(&picture(&rendered(&scene, camera, &mono)));
+        let both = mono.with(|s| {
+            s.stereo.mode = Stereo::Instanced;
+            s.stereo.ipd_m = 0.0;
+            s.stereo.output = crate::Output::SideBySide;
+            s.stereo.gaze_shift = [0.0, f32::MIN_POSITIVE];
+        });
+        let [_, right] = halves(&scene, camera, &both);
+        let (differing, by) = difference(&one, &right);
+        let most = if rounds_alike() { 15 } else { one.len() / 50 };
+        assert!(differing <= most, "{aa:?}: {differing} pixels by {by}");
+    }
+}
+
+#[test]
 fn eyes_that_see_alike_are_drawn_once_whatever_is_asked_for() {
     let scene = generate::alpha();
     let camera = &scene.cameras[0];

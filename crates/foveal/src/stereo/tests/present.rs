@@ -5,7 +5,7 @@ use foveal_scene::{Camera, Scene};
 use glam::{Mat3, Vec2, Vec3};
 
 use super::two_eyes;
-use crate::stereo::{LensFit, eyes};
+use crate::stereo::{EyeLayout, LensFit, eyes};
 use crate::testing::{picture, rendered, texels};
 use crate::{Output, Settings, ShownEyes};
 
@@ -41,7 +41,9 @@ impl Pictures {
             self.settings.picture.height as i32,
         );
         let (x, y) = (x.clamp(0, w - 1), y.clamp(0, h - 1));
-        let texel = self.texels[(y * 2 * w + eye as i32 * w + x) as usize];
+        let layout = EyeLayout::of(&self.settings);
+        let first = y as u32 * layout.target_size().0 + eye * layout.stride;
+        let texel = self.texels[first as usize + x as usize];
         Vec3::new(texel[0].into(), texel[1].into(), texel[2].into()) / 255.0
     }
 
