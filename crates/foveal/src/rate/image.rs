@@ -21,10 +21,10 @@ impl RateImage {
         })
     }
 
-    /// The level that a grey value asks for.
+    /// The level, 0 to 8, that a grey value asks for.
     #[must_use]
     pub fn level_of(luma: u8) -> u8 {
-        // 255 / 8, rounded to the nearest level.
+        // luma * 8 / 255, rounded.
         ((u16::from(luma) * 8 + 127) / 255) as u8
     }
 
@@ -48,7 +48,10 @@ mod tests {
     fn black_asks_for_every_pixel_and_white_for_the_coarsest_level() {
         assert_eq!(RateImage::level_of(0), 0);
         assert_eq!(RateImage::level_of(255), 8);
-        assert!((0..255).all(|l| RateImage::level_of(l) <= RateImage::level_of(l + 1)));
+        for luma in 0..=255u8 {
+            let nearest = (f32::from(luma) * 8.0 / 255.0).round();
+            assert_eq!(f32::from(RateImage::level_of(luma)), nearest, "{luma}");
+        }
     }
 
     #[test]

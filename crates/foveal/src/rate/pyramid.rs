@@ -30,9 +30,10 @@ impl Grid {
 }
 
 impl MinPyramid {
-    /// Builds the pyramid over `requests`, rows of `width` (at least 1) levels; requests above
-    /// `coarsest`, which is at most 15, count as `coarsest`. With `balance`, neighbouring blocks differ
-    /// by one level at most.
+    /// Builds the pyramid over `requests`, rows of `width` (at least 1) pixels, top to bottom. The
+    /// lowest four bits of a request are its level; one above `coarsest`, which is at most 15, counts
+    /// as `coarsest`. Bit 7 marks a geometric edge, the others mean nothing. With `balance`,
+    /// neighbouring blocks differ by one level at most.
     #[must_use]
     pub fn new(width: u32, requests: &[u8], coarsest: u8, balance: bool) -> Self {
         let (width, coarsest) = (width.max(1), coarsest.min(LEVEL));
@@ -70,7 +71,9 @@ impl MinPyramid {
             .map_or((0, 0), |grid| (grid.width, grid.height))
     }
 
-    /// The cells of a level as the passes write them, row by row.
+    /// The cells of a level as the passes write them, row by row; empty beyond the coarsest level. The
+    /// lowest four bits are the coarsest level that the block's pixels allow, and with balance those
+    /// around it; bit 7 says that the block holds an edge.
     #[must_use]
     pub fn cells(&self, level: u8) -> &[u8] {
         self.level(level).map_or(&[], |grid| &grid.cells)
