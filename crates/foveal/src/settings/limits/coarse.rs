@@ -1,5 +1,6 @@
 //! Checks of coarse shading's settings, and what follows from them.
 
+use super::refusal::{within, wrong};
 use crate::COARSEST_LEVEL;
 use crate::Error;
 use crate::Shading;
@@ -28,13 +29,6 @@ impl Settings {
 
 /// Checks the settings of coarse shading.
 pub(super) fn validate(s: &Settings) -> Result<(), Error> {
-    let wrong = |name, value: String, expected| {
-        Err(Error::Setting {
-            name,
-            value,
-            expected,
-        })
-    };
     let shows_tiles = matches!(
         s.picture.view,
         DebugView::Rate | DebugView::Blocks | DebugView::Shaded
@@ -52,9 +46,7 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
         ("coarsest-level", s.coarse.coarsest_level),
         ("rate-level", s.coarse.constant_level),
     ] {
-        if level > COARSEST_LEVEL {
-            return wrong(name, level.to_string(), "between 0 and 8");
-        }
+        within(name, level, 0..=COARSEST_LEVEL, "between 0 and 8")?;
     }
     if !s.eye.gaze.iter().all(|g| g.is_finite() && g.abs() <= 16.0) {
         let value = format!("{},{}", s.eye.gaze[0], s.eye.gaze[1]);
@@ -64,18 +56,10 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
         ("fovea-inner", s.coarse.fovea_inner),
         ("fovea-outer", s.coarse.fovea_outer),
     ] {
-        if !(0.0..=1000.0).contains(&value) {
-            return wrong(name, value.to_string(), "between 0 and 1000");
-        }
+        within(name, value, 0.0..=1000.0, "between 0 and 1000")?;
     }
-    if !(0.1..=10.0).contains(&s.coarse.fovea_curve) {
-        return wrong(
-            "fovea-curve",
-            s.coarse.fovea_curve.to_string(),
-            "between 0.1 and 10",
-        );
-    }
-    Ok(())
+    let curve = s.coarse.fovea_curve;
+    within("fovea-curve", curve, 0.1..=10.0, "between 0.1 and 10")
 }
 
 #[cfg(test)]

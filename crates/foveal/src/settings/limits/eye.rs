@@ -1,5 +1,6 @@
 //! Checks of the eye's settings.
 
+use super::refusal::within;
 use crate::Error;
 use crate::settings::Settings;
 use crate::settings::eye::wrong;
@@ -9,12 +10,5 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
     if !s.eye.display.is_possible() {
         return Err(wrong(s.eye.display.to_string()));
     }
-    if !(5.0..=10.0).contains(&s.eye.quality_jod) {
-        return Err(Error::Setting {
-            name: "quality",
-            value: s.eye.quality_jod.to_string(),
-            expected: "between 5 and 10",
-        });
-    }
-    Ok(())
+    within("quality", s.eye.quality_jod, 5.0..=10.0, "between 5 and 10")
 }

@@ -3,10 +3,12 @@
 mod coarse;
 mod eye;
 mod reduced;
+mod refusal;
 mod stereo;
 mod variable;
 
-use super::{Composite, Geometry, Settings, Shading, Shadows};
+use self::refusal::{check_limit, within, wrong};
+use super::{Composite, CullingSettings, Geometry, LightingSettings, Settings, Shading, Shadows};
 use crate::Error;
 use crate::stereo::EyeLayout;
 
@@ -23,158 +25,22 @@ impl Settings {
             ("height", self.picture.height),
         ] {
             if value == 0 {
-                return Err(Error::Setting {
-                    name,
-                    value: "0".to_owned(),
-                    expected: "at least 1",
-                });
+                return wrong(name, value, "at least 1");
             }
-            if value > most {
-                return Err(Error::Limit {
-                    what: format!("the picture's {name} in pixels"),
-                    value: u64::from(value),
-                    limit: u64::from(most),
-                    hint: String::new(),
-                });
-            }
+            check_limit(format!("the picture's {name} in pixels"), value, most)?;
         }
-        if !self.picture.exposure_stops.is_finite() || self.picture.exposure_stops.abs() > 64.0 {
-            let value = self.picture.exposure_stops.to_string();
-            return Err(Error::Setting {
-                name: "exposure",
-                value,
-                expected: "between -64 and 64",
-            });
-        }
-        if !(0.5..=1.0).contains(&self.picture.render_scale) {
-            return Err(Error::Setting {
-                name: "render-scale",
-                value: self.picture.render_scale.to_string(),
-                expected: "between 0.5 and 1",
-            });
-        }
+        let stops = self.picture.exposure_stops;
+        within("exposure", stops, -64.0..=64.0, "between -64 and 64")?;
+        let scale = self.picture.render_scale;
+        within("render-scale", scale, 0.5..=1.0, "between 0.5 and 1")?;
         for (name, value) in [
             ("point-size", self.geometry.point_size_px),
             ("line-width", self.geometry.line_width_px),
         ] {
-            if !(1.0..=64.0).contains(&value) {
-                return Err(Error::Setting {
-                    name,
-                    value: value.to_string(),
-                    expected: "between 1 and 64",
-                });
-            }
+            within(name, value, 1.0..=64.0, "between 1 and 64")?;
         }
-        if !(1..=16).contains(&self.lighting.anisotropy) {
-            let value = self.lighting.anisotropy.to_string();
-            return Err(Error::Setting {
-                name: "anisotropy",
-                value,
-                expected: "between 1 and 16",
-            });
-        }
-        let atlas = self.lighting.shadow_atlas;
-        if !(256..=8192).contains(&atlas) {
-            return Err(Error::Setting {
-                name: "shadow-atlas",
-                value: atlas.to_string(),
-                expected: "between 256 and 8192",
-            });
-        }
-        if self.lighting.shadows != Shadows::Off && atlas > most {
-            return Err(Error::Limit {
-                what: "the side of the shadow atlas in texels".to_owned(),
-                value: u64::from(atlas),
-                limit: u64::from(most),
-                hint: String::new(),
-            });
-        }
-        if !(0.125..=64.0).contains(&self.lighting.shadow_texel_px) {
-            return Err(Error::Setting {
-                name: "shadow-texel",
-                value: self.lighting.shadow_texel_px.to_string(),
-                expected: "between 0.125 and 64",
-            });
-        }
-        if !(0.0..=8.0).contains(&self.lighting.shadow_bias) {
-            return Err(Error::Setting {
-                name: "shadow-bias",
-                value: self.lighting.shadow_bias.to_string(),
-                expected: "between 0 and 8",
-            });
-        }
-        let lighting = &self.lighting;
-        if !(0.0..=100.0).contains(&lighting.light_radius_m) {
-            return Err(Error::Setting {
-                name: "light-radius",
-                value: lighting.light_radius_m.to_string(),
-                expected: "between 0 and 100",
-            });
-        }
-        if !(0.0..=90.0).contains(&lighting.sun_angle_deg) {
-            return Err(Error::Setting {
-                name: "sun-angle",
-                value: lighting.sun_angle_deg.to_string(),
-                expected: "between 0 and 90",
-            });
-        }
-        if !(0.0..=1e6).contains(&lighting.ambient_occlusion_radius_m) {
-            return Err(Error::Setting {
-                name: "ambient-occlusion-radius",
-                value: lighting.ambient_occlusion_radius_m.to_string(),
-                expected: "between 0 and 1000000",
-            });
-        }
-        if !(0.0..=1e4).contains(&lighting.environment_intensity) {
-            return Err(Error::Setting {
-                name: "environment-intensity",
-                value: lighting.environment_intensity.to_string(),
-                expected: "between 0 and 10000",
-            });
-        }
-        if !(-360.0..=360.0).contains(&lighting.environment_rotation_deg) {
-            return Err(Error::Setting {
-                name: "environment-rotation",
-                value: lighting.environment_rotation_deg.to_string(),
-                expected: "between -360 and 360",
-            });
-        }
-        for (name, value) in [
-            ("occluder-size", self.culling.occluder_size),
-            ("occludee-size", self.culling.occludee_size),
-            ("culling-radius", self.culling.radius_m),
-            ("culling-budget", self.culling.budget_ms),
-        ] {
-            if !(0.0..=1e6).contains(&value) {
-                return Err(Error::Setting {
-                    name,
-                    value: value.to_string(),
-                    expected: "between 0 and 1000000",
-                });
-            }
-        }
-        for (name, value, range, expected) in [
-            (
-                "occlusion-scale",
-                self.culling.buffer_scale,
-                1..=16,
-                "between 1 and 16",
-            ),
-            (
-                "culling-threads",
-                self.culling.threads,
-                0..=32,
-                "between 0 and 32",
-            ),
-        ] {
-            if !range.contains(&value) {
-                return Err(Error::Setting {
-                    name,
-                    value: value.to_string(),
-                    expected,
-                });
-            }
-        }
+        self.lighting.validate(most)?;
+        self.culling.validate()?;
         if crate::gpu::is_reduced(limits) {
             reduced::validate(self)?;
         }
@@ -210,6 +76,82 @@ impl Settings {
             });
         }
         Ok(())
+    }
+}
+
+impl LightingSettings {
+    /// `most`: the largest side of a texture, in texels.
+    fn validate(&self, most: u32) -> Result<(), Error> {
+        within("anisotropy", self.anisotropy, 1..=16, "between 1 and 16")?;
+        let atlas = self.shadow_atlas;
+        within("shadow-atlas", atlas, 256..=8192, "between 256 and 8192")?;
+        if self.shadows != Shadows::Off {
+            let what = "the side of the shadow atlas in texels".to_owned();
+            check_limit(what, atlas, most)?;
+        }
+        for (name, value, range, expected) in [
+            (
+                "shadow-texel",
+                self.shadow_texel_px,
+                0.125..=64.0,
+                "between 0.125 and 64",
+            ),
+            (
+                "shadow-bias",
+                self.shadow_bias,
+                0.0..=8.0,
+                "between 0 and 8",
+            ),
+            (
+                "light-radius",
+                self.light_radius_m,
+                0.0..=100.0,
+                "between 0 and 100",
+            ),
+            (
+                "sun-angle",
+                self.sun_angle_deg,
+                0.0..=90.0,
+                "between 0 and 90",
+            ),
+            (
+                "ambient-occlusion-radius",
+                self.ambient_occlusion_radius_m,
+                0.0..=1e6,
+                "between 0 and 1000000",
+            ),
+            (
+                "environment-intensity",
+                self.environment_intensity,
+                0.0..=1e4,
+                "between 0 and 10000",
+            ),
+            (
+                "environment-rotation",
+                self.environment_rotation_deg,
+                -360.0..=360.0,
+                "between -360 and 360",
+            ),
+        ] {
+            within(name, value, range, expected)?;
+        }
+        Ok(())
+    }
+}
+
+impl CullingSettings {
+    fn validate(&self) -> Result<(), Error> {
+        for (name, value) in [
+            ("occluder-size", self.occluder_size),
+            ("occludee-size", self.occludee_size),
+            ("culling-radius", self.radius_m),
+            ("culling-budget", self.budget_ms),
+        ] {
+            within(name, value, 0.0..=1e6, "between 0 and 1000000")?;
+        }
+        let scale = self.buffer_scale;
+        within("occlusion-scale", scale, 1..=16, "between 1 and 16")?;
+        within("culling-threads", self.threads, 0..=32, "between 0 and 32")
     }
 }
 

@@ -1,6 +1,7 @@
 //! Settings on devices without storage buffers and compute shaders
 //! ([`Gpu::reduced_limits`](crate::Gpu::reduced_limits)).
 
+use super::refusal::wrong;
 use crate::Error;
 use crate::settings::{
     Antialiasing, DebugView, Geometry, LightingPass, Setting, Settings, Shading, Shadows,
@@ -68,11 +69,10 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
     ];
     match requests.into_iter().find(|(_, is_met, _)| !is_met) {
         None => Ok(()),
-        Some((name, _, only)) => Err(Error::Setting {
-            name,
-            value: "beyond the reduced renderer, which draws on this device".to_owned(),
-            expected: only,
-        }),
+        Some((name, _, only)) => {
+            let value = "beyond the reduced renderer, which draws on this device";
+            wrong(name, value, only)
+        }
     }
 }
 

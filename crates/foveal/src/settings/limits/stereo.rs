@@ -1,5 +1,6 @@
 //! Checks of the settings of stereo, and what follows from them.
 
+use super::refusal::{within, wrong};
 use crate::Error;
 use crate::EyeFrusta;
 use crate::Output;
@@ -65,35 +66,23 @@ impl Settings {
 
 /// Checks the settings of stereo.
 pub(super) fn validate(s: &Settings, limits: &wgpu::Limits) -> Result<(), Error> {
-    let wrong = |name, value: String, expected| {
-        Err(Error::Setting {
-            name,
-            value,
-            expected,
-        })
-    };
     if s.rates_by_lens() && !(s.is_stereo() && s.stereo.output == Output::Headset) {
-        return wrong(
-            "rate",
-            "lens".to_owned(),
-            "another source unless stereo is on and the output is a headset's",
-        );
+        let expected = "another source unless stereo is on and the output is a headset's";
+        return wrong("rate", "lens", expected);
     }
     if s.stereo.mode == Stereo::Multiview && s.antialiasing.mode != Antialiasing::None {
         let expected = "auto, instanced or two-pass where edges are smoothed: sub-samples of both eyes lie in one target";
-        return wrong("stereo", "multiview".to_owned(), expected);
+        return wrong("stereo", "multiview", expected);
     }
-    if !(0.0..=1000.0).contains(&s.stereo.ipd_m) {
-        return wrong(
-            "ipd",
-            s.stereo.ipd_m.to_string(),
-            "between 0 and 1000 metres",
-        );
-    }
-    if !(1e-3..=1e9).contains(&s.stereo.convergence_m) {
-        let value = s.stereo.convergence_m.to_string();
-        return wrong("convergence", value, "between 0.001 and 1e9 metres");
-    }
+    let ipd = s.stereo.ipd_m;
+    within("ipd", ipd, 0.0..=1000.0, "between 0 and 1000 metres")?;
+    let convergence = s.stereo.convergence_m;
+    within(
+        "convergence",
+        convergence,
+        1e-3..=1e9,
+        "between 0.001 and 1e9 metres",
+    )?;
     let frusta = match s.stereo.frusta {
         EyeFrusta::Camera => &[][..],
         EyeFrusta::Tangents(ref eyes) => &eyes[..],
@@ -101,7 +90,7 @@ pub(super) fn validate(s: &Settings, limits: &wgpu::Limits) -> Result<(), Error>
     for [left, right, bottom, top] in frusta {
         let sound = [left, right, bottom, top].iter().all(|t| t.abs() <= 100.0);
         if !(sound && right - left >= 1e-3 && top - bottom >= 1e-3) {
-            return wrong("eye-tangents", s.stereo.frusta.to_string(), TANGENTS);
+            return wrong("eye-tangents", s.stereo.frusta, TANGENTS);
         }
     }
     let [x, y] = s.stereo.gaze_shift;

@@ -1,5 +1,6 @@
 //! Checks of variable shading's settings, and the stage that is done at a rate.
 
+use super::refusal::{within, wrong};
 use crate::Error;
 use crate::Geometry;
 use crate::RateStage;
@@ -32,13 +33,6 @@ impl Settings {
 
 /// Checks the settings of variable shading.
 pub(super) fn validate(s: &Settings) -> Result<(), Error> {
-    let wrong = |name, value: String, expected| {
-        Err(Error::Setting {
-            name,
-            value,
-            expected,
-        })
-    };
     let name = |value: &dyn std::fmt::Debug| format!("{value:?}").to_lowercase();
     let variable = s.shading.mode == Shading::Variable;
     for (setting, source) in [
@@ -109,9 +103,7 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
         ("contrast-threshold", s.variable.threshold),
         ("velocity-gain", s.variable.velocity_gain),
     ] {
-        if !(0.0..=10.0).contains(&value) {
-            return wrong(setting, value.to_string(), "between 0 and 10");
-        }
+        within(setting, value, 0.0..=10.0, "between 0 and 10")?;
     }
     Ok(())
 }
