@@ -54,21 +54,25 @@ impl Settings {
             1
         }
     }
+}
 
-    /// Whether a source of the rate map is the lens.
-    pub(crate) fn rates_by_lens(&self) -> bool {
-        let second = self.coarse.combine != RateCombine::First;
-        self.shading.mode == Shading::Coarse
-            && (self.coarse.source == RateSource::Lens
-                || second && self.coarse.other_source == RateSource::Lens)
-    }
+/// The setting by which the lens is a source of the rate map.
+fn rate_by_lens(s: &Settings) -> Option<&'static str> {
+    let has_second = s.coarse.combine != RateCombine::First;
+    let first = (s.coarse.source == RateSource::Lens).then_some("rate");
+    let second = (has_second && s.coarse.other_source == RateSource::Lens).then_some("rate-other");
+    first
+        .or(second)
+        .filter(|_| s.shading.mode == Shading::Coarse)
 }
 
 /// Checks the settings of stereo.
 pub(super) fn validate(s: &Settings, limits: &wgpu::Limits) -> Result<(), Error> {
-    if s.rates_by_lens() && !(s.is_stereo() && s.stereo.output == Output::Headset) {
+    if let Some(name) = rate_by_lens(s)
+        && !(s.is_stereo() && s.stereo.output == Output::Headset)
+    {
         let expected = "another source unless stereo is on and the output is a headset's";
-        return wrong("rate", "lens", expected);
+        return wrong(name, "lens", expected);
     }
     if s.stereo.mode == Stereo::Multiview && s.antialiasing.mode != Antialiasing::None {
         let expected = "auto, instanced or two-pass where edges are smoothed: sub-samples of both eyes lie in one target";
@@ -150,7 +154,7 @@ mod tests {
         let stereo = Settings::default().with(|s| s.stereo.mode = Stereo::Instanced);
         assert_eq!(message(&stereo), "");
         type Change = fn(&mut Settings);
-        let wrong: [(&str, Change); 13] = [
+        let wrong: [(&str, Change); 14] = [
             ("ipd", |s| s.stereo.ipd_m = -0.06),
             ("ipd", |s| s.stereo.ipd_m = f32::NAN),
             ("convergence", |s| s.stereo.convergence_m = 0.0),
@@ -168,8 +172,13 @@ mod tests {
                 s.stereo.frusta = "-1,inf,-1,1,-1,1,-1,1".parse().expect("it can be read")
             }),
             ("gaze-shift", |s| s.stereo.gaze_shift = [f32::NAN, 0.0]),
-            ("rate", |s| {
+            ("setting rate is lens", |s| {
                 (s.shading.mode, s.coarse.source) = (Shading::Coarse, RateSource::Lens);
+            }),
+            ("setting rate-other is lens", |s| {
+                s.shading.mode = Shading::Coarse;
+                s.coarse.combine = RateCombine::Finer;
+                s.coarse.other_source = RateSource::Lens;
             }),
             ("lens", |s| {
                 s.stereo.lens = "-0.5,0,0".parse().expect("it can be read")
