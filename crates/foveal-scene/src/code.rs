@@ -129,8 +129,6 @@ codes! {
     ExtensionRequired = "EXTENSION_REQUIRED",
     /// The file uses an extension that is not supported, and is shown without it.
     ExtensionIgnored = "EXTENSION_IGNORED",
-    /// The file uses an extension that is honoured in part. At present there is none.
-    ExtensionApproximated = "EXTENSION_APPROXIMATED",
     /// The file asks for more than a limit.
     LimitExceeded = "LIMIT_EXCEEDED",
     /// The options ask for what the file does not have.
