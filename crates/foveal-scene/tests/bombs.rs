@@ -14,6 +14,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use foveal_scene::{Code, Limit, LoadOptions, Scene, SceneError, Warning, load_bytes};
+use foveal_seeds::crc32;
 use serde_json::{Value, json};
 
 /// A GLB in the making, with one triangle in its first accessor.
@@ -104,14 +105,6 @@ fn huge_png(side: u32) -> Vec<u8> {
     png.extend(b"IDAT");
     png.extend(data);
     png
-}
-
-fn crc32(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(u32::MAX, |crc, b| {
-        (0..8).fold(crc ^ u32::from(*b), |c, _| {
-            (c >> 1) ^ (0xEDB8_8320 & (c & 1).wrapping_neg())
-        })
-    })
 }
 
 /// A whole PNG of one grey.

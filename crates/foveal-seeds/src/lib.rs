@@ -14,6 +14,7 @@
 mod around;
 mod basis;
 mod compressed;
+mod crc;
 mod file;
 pub mod pointers;
 mod rich;
@@ -24,6 +25,7 @@ pub use basis::{ETC1S, KTX2_SIZE, UASTC, UASTC_ZSTD, ktx2_file, ktx2_texel};
 pub use compressed::{
     bumpy_grid, draco_file, draco_stream, gradient, grid_file, meshopt_file, webp_file,
 };
+pub use crc::crc32;
 pub use file::File;
 pub use rich::{extended, rich};
 pub use strokes::strokes;

@@ -1,6 +1,6 @@
 //! Input that means harm, or might as well.
 
-use foveal_seeds::rich;
+use foveal_seeds::{crc32, rich};
 use proptest::prelude::*;
 use serde_json::json;
 
@@ -185,14 +185,6 @@ fn a_picture_that_promises_too_much_is_not_decoded() {
         "{}",
         warnings(&scene)
     );
-}
-
-fn crc32(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(u32::MAX, |crc, b| {
-        (0..8).fold(crc ^ u32::from(*b), |c, _| {
-            (c >> 1) ^ (0xEDB8_8320 & (c & 1).wrapping_neg())
-        })
-    })
 }
 
 #[test]
