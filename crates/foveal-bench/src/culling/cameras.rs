@@ -15,9 +15,10 @@ use foveal_scene::Scene;
 use glam::{DVec3, Vec3};
 
 use super::inside;
+use foveal_host::camera::near_m;
 use foveal_host::culling::Occluders;
 use foveal_host::culling::camera_file;
-use foveal_host::culling::{NamedEye, defaults, named_eye, near_m, own_cameras};
+use foveal_host::culling::{NamedEye, defaults, named_eye, own_cameras};
 
 /// Cameras other than the scene's own and those around it.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -12,8 +12,9 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::boxes::unit;
+use foveal_host::camera::near_m;
+use foveal_host::culling::NamedEye;
 use foveal_host::culling::Occluders;
-use foveal_host::culling::{NamedEye, near_m};
 
 /// Places that are looked for, and directions from each.
 const PLACES: usize = 12;

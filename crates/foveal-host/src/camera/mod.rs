@@ -8,5 +8,5 @@ mod viewpoint;
 pub use args::CameraArgs;
 pub(crate) use args::check_direction;
 pub use path::CameraPath;
-pub use viewpoint::Viewpoint;
 pub(crate) use viewpoint::of_every_scene;
+pub use viewpoint::{Viewpoint, near_m};

@@ -224,8 +224,10 @@ fn inside_camera(scene: &Scene) -> Option<Camera> {
     Some(with_near_plane(camera, near_m(scene)))
 }
 
-/// 5 cm, and less in scenes that are small themselves; depth is reversed and loses nothing by it.
-fn near_m(scene: &Scene) -> f32 {
+/// Distance of the near plane in metres for cameras that a scene does not bring along: 5 cm, and less
+/// in scenes that are small themselves; depth is reversed and loses nothing by it.
+#[must_use]
+pub fn near_m(scene: &Scene) -> f32 {
     let diagonal = scene.bounds().size().length();
     if diagonal > 0.0 {
         (1e-3 * diagonal).clamp(1e-6, 0.05)

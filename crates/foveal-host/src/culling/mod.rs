@@ -21,5 +21,5 @@ pub use frustum::{clip_position, corners};
 pub use occludees::Occludees;
 pub use occluders::{Choice, Occluders, Shape};
 pub use subject::Subject;
-pub use views::{defaults, named_eye, near_m, own_cameras};
+pub use views::{defaults, named_eye, own_cameras};
 pub use workers::Workers;

@@ -8,7 +8,7 @@ use glam::{DAffine3, DMat3, Vec3};
 use super::args::ViewArgs;
 use super::camera_file::{self, Defaults};
 use super::eye::NamedEye;
-use crate::camera::of_every_scene;
+use crate::camera::{near_m, of_every_scene};
 
 const DEFAULT_FOV_DEG: f32 = 60.0;
 
@@ -23,7 +23,7 @@ impl ViewArgs {
             let up = self.up.unwrap_or(Vec3::Y);
             let mut camera = Camera::look_at(eye, target, up, fov_y_deg.to_radians());
             if let SceneProjection::Perspective { near_m, .. } = &mut camera.projection {
-                *near_m = self::near_m(scene);
+                *near_m = crate::camera::near_m(scene);
             }
             vec![camera]
         } else if let Some(name) = &self.camera {
@@ -87,16 +87,6 @@ fn by_name(name: &str, scene: &Scene) -> anyhow::Result<Camera> {
                 names.join(", ")
             )
         }
-    }
-}
-
-/// 5 cm, and less in scenes that are small themselves, as the renderer has it.
-pub fn near_m(scene: &Scene) -> f32 {
-    let diagonal = scene.bounds().size().length();
-    if diagonal > 0.0 {
-        (1e-3 * diagonal).clamp(1e-6, 0.05)
-    } else {
-        0.05
     }
 }
 
