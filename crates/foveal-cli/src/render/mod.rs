@@ -66,39 +66,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     if jobs.is_empty() {
         if !args.quiet {
-            if let Some(file) = &args.stats {
-                console::warn(&format!(
-                    "no frame is drawn: there are no figures, and '{}' is not written",
-                    file.display()
-                ));
-            }
-            match total {
-                0 => console::note("this part of the range has no frames; nothing to draw\n"),
-                _ => console::note(&format!(
-                    "all {total} frames are there already; nothing to draw\n"
-                )),
-            }
+            say_nothing_is_drawn(args, total);
         }
         return Ok(());
     }
-    if args.frames.share && !args.quiet && follows_on(&settings) {
-        console::warn(
-            "frames with kept light, variable shading or a shadow budget follow on the ones before, and shared frames do \
-             not: neighbours may differ; --part keeps them together",
-        );
-    }
     if !args.quiet {
-        let reads = settings.lighting.environment == EnvironmentSource::Image;
-        if args.settings.gives("environment-image") && !reads {
-            console::warn("--environment-image is not read: it is for --environment image");
-        }
-        if args.settings.gives("rate-image") && !rate_image::is_read(&settings) {
-            console::warn(
-                "--rate-image is not read: it is for --rate image with a --shading that has rates",
-            );
-        }
-        let warnings = args.without_effect(&settings);
-        warnings.iter().for_each(|warning| console::warn(warning));
+        warn_of_flags(args, &settings);
     }
 
     let mut load_ms = Vec::new();
@@ -184,6 +157,43 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         console::note(&summary::text(&run, open - run.frames.len() as u64));
     }
     Ok(())
+}
+
+/// Says why there is nothing to draw of the `total` frames that were asked for.
+fn say_nothing_is_drawn(args: &Args, total: usize) {
+    if let Some(file) = &args.stats {
+        console::warn(&format!(
+            "no frame is drawn: there are no figures, and '{}' is not written",
+            file.display()
+        ));
+    }
+    match total {
+        0 => console::note("this part of the range has no frames; nothing to draw\n"),
+        _ => console::note(&format!(
+            "all {total} frames are there already; nothing to draw\n"
+        )),
+    }
+}
+
+/// Warns of flags that do nothing, or not what they do elsewhere.
+fn warn_of_flags(args: &Args, settings: &Settings) {
+    if args.frames.share && follows_on(settings) {
+        console::warn(
+            "frames with kept light, variable shading or a shadow budget follow on the ones before, and shared frames do \
+             not: neighbours may differ; --part keeps them together",
+        );
+    }
+    let reads = settings.lighting.environment == EnvironmentSource::Image;
+    if args.settings.gives("environment-image") && !reads {
+        console::warn("--environment-image is not read: it is for --environment image");
+    }
+    if args.settings.gives("rate-image") && !rate_image::is_read(settings) {
+        console::warn(
+            "--rate-image is not read: it is for --rate image with a --shading that has rates",
+        );
+    }
+    let warnings = args.without_effect(settings);
+    warnings.iter().for_each(|warning| console::warn(warning));
 }
 
 /// The folder of a sequence, where it is missing.
