@@ -66,7 +66,8 @@ impl Side {
             s.picture.height = height;
         });
         // Some outputs show both eyes in full, side by side.
-        settings.picture.width = (width * width / settings.picture_size().0).max(1);
+        let shown = u64::from(settings.picture_size().0.max(1));
+        settings.picture.width = (u64::from(width).pow(2) / shown).max(1) as u32;
         let uploads = settings.needs_scene_again(self.renderer.settings());
         self.renderer
             .set_settings(&settings)
