@@ -1,5 +1,5 @@
 // What the picture shows of the eyes' pictures, which hold sRGB values. CPU twin:
-// `stereo/tests.rs`.
+// `stereo/tests/present.rs`.
 
 #import shared/frame.wgsl
 #import shared/full_screen.wgsl

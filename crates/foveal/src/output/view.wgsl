@@ -2,6 +2,7 @@
 
 #import shared/frame.wgsl
 #import shared/full_screen.wgsl
+#import shared/hash.wgsl
 #import shared/layers.wgsl
 #import shared/places.wgsl
 #import shared/surface.wgsl
@@ -19,15 +20,6 @@ override VIEW: u32 = 1u;
 #else
 @group(1) @binding(3) var<storage, read> places: array<Place>;
 #endif
-
-// Integer hash (Wang 2007), so that every device gives an instance the same colour.
-fn hash(value: u32) -> u32 {
-    var h = (value ^ 61u) ^ (value >> 16u);
-    h *= 9u;
-    h ^= h >> 4u;
-    h *= 0x27d4eb2du;
-    return h ^ (h >> 15u);
-}
 
 @fragment
 fn view(@builtin(position) position: vec4f) -> @location(0) vec4f {

@@ -1,6 +1,8 @@
 // A small scene on which the ways of submission are tried: draws of a few triangles each that lie
 // everywhere and beyond every border. Rust: `stereo/trial.rs`.
 
+#import shared/hash.wgsl
+
 #variant
 #variant CLIPPED
 #variant LAYERED
@@ -17,15 +19,6 @@ struct Corner {
     @location(0) @interpolate(flat) number: u32,
     // How far inside the eye's own half of the target; negative beyond the centre.
     @location(1) inside_own_half: f32,
-}
-
-// Wang 2007.
-fn hash(value: u32) -> u32 {
-    var h = (value ^ 61u) ^ (value >> 16u);
-    h *= 9u;
-    h ^= h >> 4u;
-    h *= 0x27d4eb2du;
-    return h ^ (h >> 15u);
 }
 
 // -1 to 1.

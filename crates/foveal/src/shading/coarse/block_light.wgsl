@@ -52,11 +52,6 @@ fn filter_over_block(sample_surface: Surface, block: vec2u, level: u32, distance
     return BlockSurface(s, sqrt(sqrt(a2)));
 }
 
-fn unit_or(direction: vec3f, other: vec3f) -> vec3f {
-    let size = length(direction);
-    return select(other, direction / max(size, 1e-30), size > 1e-30);
-}
-
 // Sine of the angle by which a place at a block's rim may lie off the sample's plane and count as the same
 // surface.
 const MOST_OFF_PLANE: f32 = 0.3;
@@ -123,8 +118,8 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
         stands_for = block_of(block, level, s);
     }
     let lit = light_surface(s, v, look, pixel, distance, stands_for);
-    let direction = unit_or(lit.direction, s.normal);
-    let specular_direction = unit_or(lit.specular_direction, s.normal);
+    let direction = direction_or(lit.direction, s.normal);
+    let specular_direction = direction_or(lit.specular_direction, s.normal);
     let together = saturate(length(lit.specular_direction) / max(luminance(lit.specular), 1e-30));
     let spread = SPREAD * (1.0 - together);
     let lobe = highlight(s.normal, v, specular_direction, squared_alpha(s) + spread);

@@ -57,6 +57,12 @@ fn highlight(n: vec3f, v: vec3f, l: vec3f, a2: f32) -> f32 {
     return n_dot_l * ggx_lobe(n, v, l, normalize(v + l), n_dot_l, min(a2, 1.0));
 }
 
+// The unit vector of a direction; `other` where it has none.
+fn direction_or(direction: vec3f, other: vec3f) -> vec3f {
+    let size = length(direction);
+    return select(other, direction / max(size, 1e-30), size > 1e-30);
+}
+
 fn snorm_bits(v: vec2f, most: f32) -> vec2u {
     return vec2u(clamp(v, vec2f(-1.0), vec2f(1.0)) * most + (most + 0.5));
 }

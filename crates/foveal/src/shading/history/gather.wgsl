@@ -32,11 +32,6 @@ fn light_of(tile: Tile, at: vec2u) -> vec4u {
     return textureLoad(light, at, 0);
 }
 
-fn unit_or(direction: vec3f, other: vec3f) -> vec3f {
-    let size = length(direction);
-    return select(other, direction / max(size, 1e-30), size > 1e-30);
-}
-
 @compute @workgroup_size(64)
 fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = list_index(group, local, dispatch.groups.x);
@@ -63,8 +58,8 @@ fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     }
     textureStore(radiance, texel, vec4f(min(other + lights, vec3f(65504.0)), 1.0));
     // As light from one direction each, which gives the same on this surface.
-    let direction = unit_or(found.direction, s.normal);
-    let specular_direction = unit_or(found.specular_direction, s.normal);
+    let direction = direction_or(found.direction, s.normal);
+    let specular_direction = direction_or(found.specular_direction, s.normal);
     let spread = found.spread / found.weight;
     let lobe = highlight(s.normal, v, specular_direction, squared_alpha(s) + spread);
     textureStore(gathered, texel, pack_light(SampleLight(
