@@ -2,8 +2,11 @@
 
 use std::sync::OnceLock;
 
-use foveal_scene::{Aabb, Camera, Instance, Material, Mesh, Object, Scene};
-use glam::Mat4;
+use foveal_scene::{
+    Aabb, Camera, ColorSpace, Encoding, Instance, Material, Mesh, Object, Sampler, Scene, Texture,
+    TextureRef,
+};
+use glam::{Mat3, Mat4, Vec3};
 
 use crate::gpu::{MipChain, read_level, read_texture};
 use crate::{Frame, FrameStats, Gpu, Renderer, Settings};
@@ -79,6 +82,14 @@ pub(crate) fn texels<T: bytemuck::Pod>(view: &wgpu::TextureView) -> Vec<T> {
     bytemuck::pod_collect_to_vec(&bytes)
 }
 
+/// Radiance of a frame's pixels, row by row.
+pub(crate) fn radiance(renderer: &Renderer) -> Vec<Vec3> {
+    texels::<[u16; 4]>(&renderer.targets().radiance_view)
+        .into_iter()
+        .map(|[r, g, b, _]| Vec3::from([r, g, b].map(f32_of_half)))
+        .collect()
+}
+
 /// The cells of a level of a rate map, row by row, whichever kind of pass wrote them.
 pub(crate) fn rate_cells(chain: &MipChain, level: u32) -> Vec<u8> {
     let read = read_level(gpu(), &chain.texture, level - 1, chain.blocks(level));
@@ -97,6 +108,24 @@ pub(crate) fn f32_of_half(bits: u16) -> f32 {
         0 => mantissa * 2f32.powi(-14),
         31 => f32::INFINITY,
         _ => (1.0 + mantissa) * 2f32.powi(exponent - 15),
+    }
+}
+
+/// Light from 0 to 1 for a code of sRGB from 0 to 1.
+pub(crate) fn linear_of_srgb(code: f32) -> f32 {
+    if code <= 0.04045 {
+        code / 12.92
+    } else {
+        ((code + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+/// The code of sRGB from 0 to 1 for light from 0 to 1.
+pub(crate) fn srgb_of_linear(linear: f32) -> f32 {
+    if linear <= 0.0031308 {
+        linear * 12.92
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
     }
 }
 
@@ -166,6 +195,28 @@ pub(crate) fn shifted(camera: &Camera, x: f32) -> Camera {
     let mut camera = camera.clone();
     camera.world_from_view.w_axis.x += x;
     camera
+}
+
+/// A texture in the first texture coordinates as they are.
+pub(crate) fn slot(texture: u32) -> Option<TextureRef> {
+    Some(TextureRef {
+        texture,
+        uv_set: 0,
+        uv_transform: Mat3::IDENTITY,
+    })
+}
+
+/// A texture of one texel.
+pub(crate) fn one_texel(color_space: ColorSpace, texel: [u8; 4]) -> Texture {
+    Texture {
+        name: "one texel".to_owned(),
+        width: 1,
+        height: 1,
+        color_space,
+        sampler: Sampler::default(),
+        encoding: Encoding::Rgba8,
+        levels: vec![texel.to_vec()],
+    }
 }
 
 /// A mesh that an object of its own shows.

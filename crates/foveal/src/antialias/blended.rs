@@ -128,8 +128,8 @@ mod tests {
     use glam::{Vec3, Vec4};
 
     use crate::forward::twin::quads;
-    use crate::testing::{f32_of_half, rendered, small, texels};
-    use crate::{Antialiasing, EdgeTest, Geometry, Renderer, SamplePattern, Settings};
+    use crate::testing::{radiance, rendered, small};
+    use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings};
 
     const SIZE: (u32, u32) = (23, 17);
 
@@ -166,13 +166,6 @@ mod tests {
     fn camera() -> Camera {
         let eye = Vec3::new(0.9, 0.7, 4.6);
         Camera::look_at(eye, Vec3::ZERO, Vec3::new(0.3, 1.0, 0.0), 0.7)
-    }
-
-    fn radiance(renderer: &Renderer) -> Vec<Vec3> {
-        texels::<[u16; 4]>(&renderer.targets().radiance_view)
-            .into_iter()
-            .map(|t| Vec3::new(f32_of_half(t[0]), f32_of_half(t[1]), f32_of_half(t[2])))
-            .collect()
     }
 
     /// Where the glasses lie within the opaque quad or beside it, a picture of n times the size,

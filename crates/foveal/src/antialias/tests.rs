@@ -6,7 +6,7 @@ use foveal_scene::{Camera, Projection, Scene};
 use glam::{Mat4, Vec3};
 
 use super::twin::{SampleTexels, resolve};
-use crate::testing::{f32_of_half, picture, rate_cells, rendered, small, texels};
+use crate::testing::{picture, radiance, rate_cells, rendered, small, texels};
 use crate::{Antialiasing, EdgeTest, Geometry, Renderer, SamplePattern, Settings};
 
 const WIDTH: u32 = 41;
@@ -18,13 +18,6 @@ fn settings(aa: Antialiasing, edge_test: EdgeTest, samples: u32) -> Settings {
         s.antialiasing.edge_test = edge_test;
         s.antialiasing.samples = samples;
     })
-}
-
-fn radiance(renderer: &Renderer) -> Vec<Vec3> {
-    texels::<[u16; 4]>(&renderer.targets().radiance_view)
-        .into_iter()
-        .map(|t| Vec3::new(f32_of_half(t[0]), f32_of_half(t[1]), f32_of_half(t[2])))
-        .collect()
 }
 
 fn samples_of(renderer: &Renderer) -> SampleTexels {

@@ -1,20 +1,18 @@
 //! Light of further bounces between microfacets: a white furnace, and shaders against the twin.
 
 use foveal_generate as generate;
-use foveal_scene::{Camera, Scene};
+use foveal_scene::Scene;
 use glam::{Vec2, Vec3};
 
 use super::EnvironmentMap;
+use super::frame_tests::rendered;
 use super::reflectance::looked_up;
 use super::tests::reflected_part;
 use super::twin::Around;
 use crate::shading::dielectric::PLAIN_DIELECTRIC;
 use crate::shading::twin::{Surface, light_surface, position_at, to_eye, unpack_surface};
-use crate::testing::{Film, f32_of_half, gpu, picture, small, texels};
-use crate::{
-    Background, EnvironmentSource, Frame, LightingModel, Renderer, RendererOptions, Settings,
-    Shading,
-};
+use crate::testing::{Film, picture, radiance, small, texels};
+use crate::{Background, EnvironmentSource, LightingModel, Settings, Shading};
 
 fn entry(s: &Surface, v: Vec3) -> Vec3 {
     looked_up(s.normal.dot(v).clamp(0.0, 1.0), s.roughness)
@@ -103,25 +101,6 @@ fn coloured_metals_deepen_and_nothing_reflects_more_than_arrives() {
             assert!(further(&plain, v).max_element() < 0.02);
         }
     }
-}
-
-fn rendered(scene: &Scene, camera: &Camera, settings: &Settings, map: &EnvironmentMap) -> Renderer {
-    pollster::block_on(async {
-        let mut renderer = Renderer::new(gpu(), settings, RendererOptions::default())
-            .await
-            .unwrap();
-        renderer.set_environment(map.clone()).await.unwrap();
-        renderer.set_scene(scene).await.unwrap();
-        renderer.render(&Frame::new(camera)).await.unwrap();
-        renderer
-    })
-}
-
-fn radiance(renderer: &Renderer) -> Vec<Vec3> {
-    texels::<[u16; 4]>(&renderer.targets().radiance_view)
-        .into_iter()
-        .map(|[r, g, b, _]| Vec3::from([r, g, b].map(f32_of_half)))
-        .collect()
 }
 
 const WIDTH: u32 = 97;

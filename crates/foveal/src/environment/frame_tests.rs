@@ -7,7 +7,7 @@ use glam::{Quat, Vec2, Vec3};
 use super::EnvironmentMap;
 use super::twin::Around;
 use crate::shading::twin::{position_at, to_eye, unpack_surface};
-use crate::testing::{Film, f32_of_half, gpu, picture, shifted, small, texels};
+use crate::testing::{Film, f32_of_half, gpu, picture, radiance, shifted, small, texels};
 use crate::{
     Antialiasing, Background, Composite, EnvironmentSource, Frame, RateSource, Renderer,
     RendererOptions, Settings, Shading, Stereo,
@@ -24,7 +24,12 @@ fn lit_by_image(settings: Settings) -> Settings {
 }
 
 /// A renderer that has drawn `scene` once in the light of `map`.
-fn rendered(scene: &Scene, camera: &Camera, settings: &Settings, map: &EnvironmentMap) -> Renderer {
+pub(super) fn rendered(
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
+    map: &EnvironmentMap,
+) -> Renderer {
     pollster::block_on(async {
         let mut renderer = Renderer::new(gpu(), settings, RendererOptions::default())
             .await
@@ -34,13 +39,6 @@ fn rendered(scene: &Scene, camera: &Camera, settings: &Settings, map: &Environme
         renderer.render(&Frame::new(camera)).await.unwrap();
         renderer
     })
-}
-
-fn radiance(renderer: &Renderer) -> Vec<Vec3> {
-    texels::<[u16; 4]>(&renderer.targets().radiance_view)
-        .into_iter()
-        .map(|t| Vec3::new(f32_of_half(t[0]), f32_of_half(t[1]), f32_of_half(t[2])))
-        .collect()
 }
 
 #[test]

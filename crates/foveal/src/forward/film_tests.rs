@@ -3,11 +3,11 @@
 
 use std::f32::consts::{PI, TAU};
 
-use foveal_scene::{Clearcoat, ColorSpace, Iridescence, Material, Sampler, Texture, TextureRef};
+use foveal_scene::{Clearcoat, ColorSpace, Iridescence, Material};
 use glam::{Vec3, Vec4};
 
 use super::film_twin::{Film, to_srgb};
-use crate::testing::{rendered, small, texels};
+use crate::testing::{one_texel, rendered, slot, small, texels};
 
 /// CIE 1931's sensitivities over the wave number per nanometre, as normal distributions: X, Y, Z.
 fn sensitivities(wave_number: f32) -> Vec3 {
@@ -99,14 +99,6 @@ fn film() -> Iridescence {
     }
 }
 
-fn slot(texture: u32) -> Option<TextureRef> {
-    Some(TextureRef {
-        texture,
-        uv_set: 0,
-        uv_transform: glam::Mat3::IDENTITY,
-    })
-}
-
 /// Half-precision texels of a square of half metal that is drawn forward, with a film.
 fn drawn(iridescence: Option<Iridescence>) -> Vec<[u16; 4]> {
     let material = Material {
@@ -125,18 +117,10 @@ fn drawn(iridescence: Option<Iridescence>) -> Vec<[u16; 4]> {
         iridescence,
         ..Material::default()
     };
-    let texture = |texel: [u8; 4]| Texture {
-        name: "one texel".to_owned(),
-        width: 1,
-        height: 1,
-        color_space: ColorSpace::Linear,
-        sampler: Sampler::default(),
-        encoding: foveal_scene::Encoding::Rgba8,
-        levels: vec![texel.to_vec()],
-    };
     let mut scene = super::twin::quads(vec![material], &[0.0]);
-    scene.textures = vec![texture([51, 7, 7, 7]), texture([9, 102, 9, 9])];
-    scene.textures.push(texture([0; 4]));
+    scene.textures = [[51, 7, 7, 7], [9, 102, 9, 9], [0; 4]]
+        .map(|texel| one_texel(ColorSpace::Linear, texel))
+        .to_vec();
     scene.light_by_default();
     let renderer = rendered(&scene, &super::twin::front(), &small(31, 31));
     texels(&renderer.targets().radiance_view)

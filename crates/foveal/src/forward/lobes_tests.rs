@@ -4,24 +4,17 @@
 use std::f32::consts::PI;
 
 use foveal_generate as generate;
-use foveal_scene::{Camera, Clearcoat, Iridescence, Material, Scene};
+use foveal_scene::{Camera, Clearcoat, ColorSpace, Iridescence, Material, Scene};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::lobes_twin::{Lobed, sheen_lobe, sheen_part, sheen_parts};
 use crate::shading::dielectric::PLAIN_DIELECTRIC;
 use crate::shading::twin::{Surface, position_at, to_eye, unpack_surface};
-use crate::testing::{f32_of_half, picture, rendered, small, texels};
+use crate::testing::{one_texel, picture, radiance, rendered, slot, small, texels};
 use crate::{
     Antialiasing, Composite, EdgeTest, Geometry, LightingModel, RateSource, Renderer, Settings,
     Shading,
 };
-
-fn radiance(renderer: &Renderer) -> Vec<Vec3> {
-    texels::<[u16; 4]>(&renderer.targets().radiance_view)
-        .into_iter()
-        .map(|t| Vec3::new(f32_of_half(t[0]), f32_of_half(t[1]), f32_of_half(t[2])))
-        .collect()
-}
 
 /// The material seen at each pixel.
 fn materials<'a>(scene: &'a Scene, renderer: &Renderer) -> Vec<Option<&'a Material>> {
@@ -359,23 +352,6 @@ fn a_lit_coat_is_brighter_and_the_blinn_phong_model_has_it_too() {
 
 #[test]
 fn textures_of_lobes_are_read_where_their_places_say() {
-    use foveal_scene::{ColorSpace, Sampler, Texture, TextureRef};
-    let texture = |texel: [u8; 4]| Texture {
-        name: "one texel".to_owned(),
-        width: 1,
-        height: 1,
-        color_space: ColorSpace::Linear,
-        sampler: Sampler::default(),
-        encoding: foveal_scene::Encoding::Rgba8,
-        levels: vec![texel.to_vec()],
-    };
-    let slot = |texture| {
-        Some(TextureRef {
-            texture,
-            uv_set: 0,
-            uv_transform: glam::Mat3::IDENTITY,
-        })
-    };
     let coat = |factor, texture, roughness, roughness_texture| Clearcoat {
         factor,
         texture,
@@ -392,7 +368,9 @@ fn textures_of_lobes_are_read_where_their_places_say() {
             ..Material::default()
         };
         let mut scene = super::twin::quads(vec![material], &[0.0]);
-        scene.textures = vec![texture([51, 7, 7, 7]), texture([9, 102, 9, 9])];
+        scene.textures = [[51, 7, 7, 7], [9, 102, 9, 9]]
+            .map(|texel| one_texel(ColorSpace::Linear, texel))
+            .to_vec();
         scene.light_by_default();
         radiance(&rendered(&scene, &super::twin::front(), &small(31, 31)))
     };

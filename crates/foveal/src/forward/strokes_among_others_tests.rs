@@ -1,12 +1,12 @@
 //! Points and lines among other things: what hides them and what they hide, light, and settings.
 
-use foveal_scene::{AlphaMode, Light, LightKind, Material, Mesh, Scene, Transmission, Vertex};
+use foveal_scene::{AlphaMode, Light, LightKind, Material, Mesh, Scene, Vertex};
 use glam::{Mat4, Vec3, Vec4};
 use pollster::block_on;
 
-use super::strokes_tests::{SIZE, black, compare, lines, radiance, scene_of, sized, vertex, white};
-use super::twin::{front, quads};
-use crate::testing::{Film, add, picture, rendered, rendered_on, small};
+use super::strokes_tests::{SIZE, black, compare, lines, scene_of, sized, vertex, white};
+use super::twin::{assert_near, front, glass, quads};
+use crate::testing::{Film, add, picture, radiance, rendered, rendered_on, small};
 use crate::{Antialiasing, Culling, Geometry, Gpu, Settings, Shadows, Stereo};
 
 const SIDE: u32 = 31;
@@ -41,26 +41,6 @@ fn unlit(color: Vec3) -> Material {
     }
 }
 
-/// It reflects nothing.
-fn glass(color: Vec3) -> Material {
-    Material {
-        base_color: color.extend(1.0),
-        metallic: 0.0,
-        roughness: 0.0,
-        ior: 1.0,
-        specular: 0.0,
-        transmission: Some(Transmission {
-            factor: 1.0,
-            texture: None,
-            thickness_m: 0.0,
-            thickness_texture: None,
-            attenuation_distance_m: f32::INFINITY,
-            attenuation_color: Vec3::ONE,
-        }),
-        ..Material::default()
-    }
-}
-
 fn sun(direction: Vec3) -> Light {
     Light {
         kind: LightKind::Directional,
@@ -85,11 +65,6 @@ fn middle(scene: &Scene, settings: &Settings) -> Vec3 {
     let drawn = rendered(scene, &front(), settings);
     let row = drawn.targets().radiance_view.texture().width();
     radiance(&drawn)[(SIDE / 2 * row + SIDE / 2) as usize]
-}
-
-fn assert_near(found: Vec3, expected: Vec3, what: &str) {
-    let off = (found - expected).abs().max_element();
-    assert!(off < 4e-3, "{what}: {found} not {expected}");
 }
 
 #[test]

@@ -6,10 +6,8 @@ use foveal_scene::{
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use super::twin::quads;
-use crate::testing::{add, f32_of_half, picture, rendered, small, texels};
-use crate::{
-    Antialiasing, Geometry, Output, Renderer, SamplePattern, Settings, Shading, Shadows, Stereo,
-};
+use crate::testing::{add, picture, radiance, rendered, small};
+use crate::{Antialiasing, Geometry, Output, SamplePattern, Settings, Shading, Shadows, Stereo};
 
 pub(super) const SIZE: (u32, u32) = (47, 31);
 
@@ -131,13 +129,6 @@ fn within(mesh: &Mesh, camera: &Camera, settings: &Settings, pixel: u32) -> f32 
         .iter()
         .map(|&p| within_point(clip(p), g.point_size_px, size, at));
     lines.chain(points).fold(f32::NEG_INFINITY, f32::max)
-}
-
-pub(super) fn radiance(renderer: &Renderer) -> Vec<Vec3> {
-    texels::<[u16; 4]>(&renderer.targets().radiance_view)
-        .into_iter()
-        .map(|t| Vec3::new(f32_of_half(t[0]), f32_of_half(t[1]), f32_of_half(t[2])))
-        .collect()
 }
 
 pub(super) fn sized(width: f32) -> Settings {

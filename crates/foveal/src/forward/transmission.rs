@@ -87,14 +87,12 @@ impl BehindPass {
 
 #[cfg(test)]
 mod tests {
-    use foveal_scene::{AlphaMode, Environment, Material, Scene, Transmission};
+    use foveal_scene::{AlphaMode, Environment, Material, Scene};
     use glam::{Vec3, Vec4};
 
-    use crate::forward::twin::{front, quads};
-    use crate::testing::{f32_of_half, rendered, small, texels};
-    use crate::{
-        Antialiasing, EnvironmentSource, EyeFrusta, Geometry, Renderer, Settings, Shading, Stereo,
-    };
+    use crate::forward::twin::{assert_near, front, glass, quads};
+    use crate::testing::{radiance, rendered, small};
+    use crate::{Antialiasing, EnvironmentSource, EyeFrusta, Geometry, Settings, Shading, Stereo};
 
     const SIDE: u32 = 31;
 
@@ -106,35 +104,8 @@ mod tests {
         }
     }
 
-    /// It reflects nothing.
-    fn glass(color: Vec3) -> Material {
-        Material {
-            base_color: color.extend(1.0),
-            metallic: 0.0,
-            roughness: 0.0,
-            ior: 1.0,
-            specular: 0.0,
-            transmission: Some(Transmission {
-                factor: 1.0,
-                texture: None,
-                thickness_m: 0.0,
-                thickness_texture: None,
-                attenuation_distance_m: f32::INFINITY,
-                attenuation_color: Vec3::ONE,
-            }),
-            ..Material::default()
-        }
-    }
-
     fn settings() -> Settings {
         small(SIDE, SIDE).with(|s| s.lighting.environment = EnvironmentSource::None)
-    }
-
-    fn radiance(renderer: &Renderer) -> Vec<Vec3> {
-        texels::<[u16; 4]>(&renderer.targets().radiance_view)
-            .into_iter()
-            .map(|t| Vec3::new(f32_of_half(t[0]), f32_of_half(t[1]), f32_of_half(t[2])))
-            .collect()
     }
 
     fn center_with(scene: &Scene, settings: &Settings) -> Vec3 {
@@ -143,11 +114,6 @@ mod tests {
 
     fn center(scene: &Scene) -> Vec3 {
         center_with(scene, &settings())
-    }
-
-    fn assert_near(found: Vec3, expected: Vec3, what: &str) {
-        let off = (found - expected).abs().max_element();
-        assert!(off < 4e-3, "{what}: {found} not {expected}");
     }
 
     const WALL: Vec3 = Vec3::new(0.5, 0.4, 0.8);

@@ -1,9 +1,11 @@
 //! The CPU twin of the forward pass: blending of unlit quads, whose colours are known.
 
-use foveal_scene::{AlphaMode, Camera, Instance, Material, Mesh, Object, Scene, Vertex};
+use foveal_scene::{
+    AlphaMode, Camera, Instance, Material, Mesh, Object, Scene, Transmission, Vertex,
+};
 use glam::{Mat4, Vec3, Vec4};
 
-use crate::testing::{f32_of_half, rendered, small, texels};
+use crate::testing::{radiance, rendered, small};
 
 /// A quad of side 2 in the xy plane that looks towards +z.
 fn quad() -> Mesh {
@@ -75,6 +77,32 @@ pub(crate) fn front() -> Camera {
     )
 }
 
+/// Glass that reflects nothing and lets pass light of a colour.
+pub(super) fn glass(color: Vec3) -> Material {
+    Material {
+        base_color: color.extend(1.0),
+        metallic: 0.0,
+        roughness: 0.0,
+        ior: 1.0,
+        specular: 0.0,
+        transmission: Some(Transmission {
+            factor: 1.0,
+            texture: None,
+            thickness_m: 0.0,
+            thickness_texture: None,
+            attenuation_distance_m: f32::INFINITY,
+            attenuation_color: Vec3::ONE,
+        }),
+        ..Material::default()
+    }
+}
+
+/// Asserts that a pixel has its colour but for the rounding of its 16-bit floats.
+pub(super) fn assert_near(found: Vec3, expected: Vec3, what: &str) {
+    let off = (found - expected).abs().max_element();
+    assert!(off < 4e-3, "{what}: {found} not {expected}");
+}
+
 fn unlit(color: Vec4, double_sided: bool) -> Material {
     let alpha_mode = if color.w < 1.0 {
         AlphaMode::Blend
@@ -91,9 +119,7 @@ fn unlit(color: Vec4, double_sided: bool) -> Material {
 }
 
 fn center(scene: &Scene) -> Vec3 {
-    let renderer = rendered(scene, &front(), &small(31, 31));
-    let [r, g, b, _] = texels::<[u16; 4]>(&renderer.targets().radiance_view)[15 * 31 + 15];
-    Vec3::new(f32_of_half(r), f32_of_half(g), f32_of_half(b))
+    radiance(&rendered(scene, &front(), &small(31, 31)))[15 * 31 + 15]
 }
 
 #[test]

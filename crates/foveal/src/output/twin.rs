@@ -5,7 +5,7 @@ use foveal_scene::Projection;
 use glam::{Mat3, Vec2, Vec3};
 
 use crate::shading::twin::unit_from_octahedral;
-use crate::testing::{f32_of_half, picture, rendered, small, texels};
+use crate::testing::{f32_of_half, picture, radiance, rendered, small, srgb_of_linear, texels};
 use crate::{DebugView, Frame, ToneMap};
 
 fn aces(color: Vec3) -> Vec3 {
@@ -17,14 +17,6 @@ fn aces(color: Vec3) -> Vec3 {
     ]);
     let v = into * color;
     out * ((v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.432_951) + 0.238081))
-}
-
-fn srgb(linear: f32) -> f32 {
-    if linear <= 0.0031308 {
-        linear * 12.92
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
-    }
 }
 
 fn byte(value: f32) -> u8 {
@@ -53,17 +45,16 @@ fn the_tone_map_equals_its_twin() {
             s.picture.exposure_stops = 0.5;
         });
         let renderer = rendered(&scene, &scene.cameras[0], &settings);
-        let expected: Vec<Vec3> = texels::<[u16; 4]>(&renderer.targets().radiance_view)
-            .iter()
-            .map(|t| {
-                let exposed = Vec3::new(f32_of_half(t[0]), f32_of_half(t[1]), f32_of_half(t[2]))
-                    * 0.5f32.exp2();
+        let expected: Vec<Vec3> = radiance(&renderer)
+            .into_iter()
+            .map(|radiance| {
+                let exposed = radiance * 0.5f32.exp2();
                 let mapped = if tone_map == ToneMap::Aces {
                     aces(exposed)
                 } else {
                     exposed
                 };
-                mapped.clamp(Vec3::ZERO, Vec3::ONE).map(srgb)
+                mapped.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_of_linear)
             })
             .collect();
         let shown = picture(&renderer);

@@ -3,14 +3,14 @@
 
 use foveal_scene::{
     AlphaMode, Clearcoat, ColorSpace, Encoding, Filter, Material, Sampler, Scene, Texture,
-    TextureCompression, TextureRef,
+    TextureCompression,
 };
-use glam::{Mat3, Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 
 use super::ArrayLimits;
 use crate::forward::twin::{front, quads};
 use crate::shading::twin::{position_at, unpack_surface};
-use crate::testing::{gpu, picture, rendered, rounds_alike, small, texels};
+use crate::testing::{gpu, picture, rendered, rounds_alike, slot, small, texels};
 use crate::{Frame, Geometry, MaterialDispatch, Renderer, RendererOptions, Settings};
 
 /// A texture of 8 x 8 texels without filtering, in blocks as `read` says.
@@ -37,14 +37,6 @@ fn normals() -> Texture {
         let n = Vec3::new(0.1 * x as f32 - 0.4, 0.3 - 0.08 * y as f32, 1.0).normalize();
         let [x, y, z] = n.to_array().map(|v| (v * 127.5 + 128.0) as u8);
         [x, y, z, 255]
-    })
-}
-
-fn slot(texture: u32) -> Option<TextureRef> {
-    Some(TextureRef {
-        texture,
-        uv_set: 0,
-        uv_transform: Mat3::IDENTITY,
     })
 }
 

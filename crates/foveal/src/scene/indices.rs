@@ -101,21 +101,13 @@ fn beyond_vertices(mesh: &Mesh) -> Option<(String, u32)> {
 
 #[cfg(test)]
 mod tests {
-    use foveal_scene::{ImageLight, Sheen, TextureRef};
-    use glam::{Mat3, Quat, Vec3};
+    use foveal_scene::{ImageLight, Sheen};
+    use glam::{Quat, Vec3};
     use pollster::block_on;
 
     use super::*;
-    use crate::testing::{Film, picture, small};
+    use crate::testing::{Film, picture, slot, small};
     use crate::{Culling, Frame};
-
-    fn slot(texture: u32) -> Option<TextureRef> {
-        Some(TextureRef {
-            texture,
-            uv_set: 0,
-            uv_transform: Mat3::IDENTITY,
-        })
-    }
 
     type Change = fn(&mut Scene);
 

@@ -171,17 +171,9 @@ impl LobeClass {
 #[cfg(test)]
 mod tests {
     use foveal_scene::{Clearcoat, Sheen};
-    use glam::Mat3;
 
     use super::*;
-
-    fn slot(texture: u32) -> Option<TextureRef> {
-        Some(TextureRef {
-            texture,
-            uv_set: 0,
-            uv_transform: Mat3::IDENTITY,
-        })
-    }
+    use crate::testing::slot;
 
     #[test]
     fn places_share_what_is_bound_and_the_sixth_texture_is_left_out() {

@@ -4,15 +4,15 @@
 use std::f32::consts::PI;
 
 use foveal_generate as generate;
-use foveal_scene::{ColorSpace, Sampler, Scene, Texture, TextureRef};
-use glam::{Mat3, Vec2, Vec3, Vec4};
+use foveal_scene::{ColorSpace, Scene};
+use glam::{Vec2, Vec3, Vec4};
 
 use super::twin::{
     Surface, assert_equals_twin, ggx_lobe, reflect, squared_alpha, unit_from_octahedral,
     unit_from_square, unpack_shared_exponent, unpack_surface,
 };
 use crate::forward::twin::{front, quads};
-use crate::testing::{picture, rendered, small, texels};
+use crate::testing::{one_texel, picture, rendered, slot, small, texels};
 use crate::{Antialiasing, Geometry, LightingModel, Settings};
 
 /// `PLAIN_DIELECTRIC` in `shared/surface.wgsl`.
@@ -253,22 +253,6 @@ fn without_reflection_what_is_not_metal_shows_no_light_of_its_surface() {
 
 #[test]
 fn textures_of_strength_and_colour_are_read() {
-    let texture = |color_space, texel: [u8; 4]| Texture {
-        name: "one texel".to_owned(),
-        width: 1,
-        height: 1,
-        color_space,
-        sampler: Sampler::default(),
-        encoding: foveal_scene::Encoding::Rgba8,
-        levels: vec![texel.to_vec()],
-    };
-    let slot = |texture| {
-        Some(TextureRef {
-            texture,
-            uv_set: 0,
-            uv_transform: Mat3::IDENTITY,
-        })
-    };
     let material = foveal_scene::Material {
         metallic: 0.0,
         specular: 0.5,
@@ -280,8 +264,8 @@ fn textures_of_strength_and_colour_are_read() {
     let mut scene = quads(vec![material], &[0.0]);
     // Red, green and blue of the strength are not looked at.
     scene.textures = vec![
-        texture(ColorSpace::Linear, [9, 80, 200, 204]),
-        texture(ColorSpace::Srgb, [255, 188, 137, 255]),
+        one_texel(ColorSpace::Linear, [9, 80, 200, 204]),
+        one_texel(ColorSpace::Srgb, [255, 188, 137, 255]),
     ];
     for settings in ways() {
         let renderer = rendered(&scene, &front(), &settings);

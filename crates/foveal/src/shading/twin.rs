@@ -6,8 +6,8 @@ use glam::{IVec2, UVec2, Vec2, Vec2Swizzles, Vec3, Vec4};
 
 use super::dielectric::{dielectric_of, glow_of, normal_of, vertex_normal_of};
 use crate::lights::LightUniform;
-use crate::testing::{f32_of_half, rendered, texels};
-use crate::{LightingModel, Renderer, Settings};
+use crate::testing::{radiance, rendered, texels};
+use crate::{LightingModel, Settings};
 
 #[derive(Clone, Copy)]
 pub(crate) struct Surface {
@@ -361,13 +361,6 @@ pub(super) const WIDTH: u32 = 65;
 pub(super) const HEIGHT: u32 = 43;
 
 /// The radiance target's texels, red, green, blue.
-pub(super) fn radiance(renderer: &Renderer) -> Vec<Vec3> {
-    texels::<[u16; 4]>(&renderer.targets().radiance_view)
-        .into_iter()
-        .map(|t| Vec3::new(f32_of_half(t[0]), f32_of_half(t[1]), f32_of_half(t[2])))
-        .collect()
-}
-
 pub(super) fn assert_equals_twin(scene: &Scene, camera: &Camera, settings: &Settings) {
     let renderer = rendered(scene, camera, settings);
     let words: Vec<[u32; 4]> = texels(&renderer.targets().gbuffer.surface_view);

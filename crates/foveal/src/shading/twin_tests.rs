@@ -4,8 +4,8 @@ use foveal_generate as generate;
 use foveal_scene::{Light, LightKind, Projection};
 use glam::Vec3;
 
-use super::twin::{HEIGHT, WIDTH, assert_equals_twin, radiance};
-use crate::testing::{picture, rendered, small, texels};
+use super::twin::{HEIGHT, WIDTH, assert_equals_twin};
+use crate::testing::{picture, radiance, rendered, small, texels};
 use crate::{DebugView, LightAssignment, LightingModel, Settings};
 
 #[test]

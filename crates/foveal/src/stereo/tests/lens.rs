@@ -4,10 +4,9 @@ use foveal_scene::Camera;
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 
-use super::present::linear;
 use super::{halves, shape, two_eyes};
 use crate::stereo::{LensFit, eyes};
-use crate::testing::{rate_cells, rendered};
+use crate::testing::{linear_of_srgb, rate_cells, rendered};
 use crate::{CoarseBackend, Composite, Output, RateSource, RefineEdges, Settings, Shading};
 
 const NAMES: [&str; 4] = ["cardboard-v2", "cardboard-v1", "dk1", "ideal"];
@@ -87,7 +86,7 @@ fn straight_lines_come_out_straight_through_the_lens() {
                 .chunks_exact(settings.picture.width as usize)
                 .enumerate()
             {
-                let light = |x: usize| linear(f32::from(row[x][1]) / 255.0);
+                let light = |x: usize| linear_of_srgb(f32::from(row[x][1]) / 255.0);
                 // Where half of the light is left, unless the picture's own border takes it.
                 let edge = (60..row.len() - 8).find(|&x| light(x) >= 0.5 && light(x + 1) < 0.5);
                 let Some(x) = edge.filter(|&x| light(x - 4) > 0.99) else {

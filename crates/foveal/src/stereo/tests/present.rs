@@ -6,24 +6,8 @@ use glam::{Mat3, Vec2, Vec3};
 
 use super::two_eyes;
 use crate::stereo::{EyeLayout, LensFit, eyes};
-use crate::testing::{picture, rendered, texels};
+use crate::testing::{linear_of_srgb, picture, rendered, srgb_of_linear, texels};
 use crate::{Output, Settings, ShownEyes};
-
-pub(super) fn linear(srgb: f32) -> f32 {
-    if srgb <= 0.04045 {
-        srgb / 12.92
-    } else {
-        ((srgb + 0.055) / 1.055).powf(2.4)
-    }
-}
-
-fn encoded(linear: f32) -> f32 {
-    if linear <= 0.0031308 {
-        linear * 12.92
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
-    }
-}
 
 /// The eyes' pictures in the wide target.
 struct Pictures {
@@ -59,7 +43,7 @@ impl Pictures {
         let tap = |dx: i32, dy: i32| {
             let weight = |d: i32, p: f32| if d == 1 { p } else { 1.0 - p };
             let value = self.at(eye, first.x as i32 + dx, first.y as i32 + dy);
-            value.map(linear) * weight(dx, part.x) * weight(dy, part.y)
+            value.map(linear_of_srgb) * weight(dx, part.x) * weight(dy, part.y)
         };
         (tap(0, 0) + tap(1, 0) + tap(0, 1) + tap(1, 1)) * fade
     }
@@ -96,7 +80,7 @@ impl Pictures {
             self.light(eye, pixel(seen)).y,
             self.light(eye, pixel(fringe(fit.lens.blue))).z,
         )
-        .map(encoded)
+        .map(srgb_of_linear)
     }
 
     /// A pixel shows two columns of an eye's picture: its centre shows where they meet.
@@ -124,8 +108,8 @@ impl Pictures {
                 let eye = u32::from(x >= half);
                 let first = 2 * (px - (eye * half) as i32);
                 self.assert_seen_between(x, y, (eye, first));
-                let [a, b] = [0, 1].map(|d| self.at(eye, first + d, py).map(linear));
-                ((a + b) * 0.5).map(encoded)
+                let [a, b] = [0, 1].map(|d| self.at(eye, first + d, py).map(linear_of_srgb));
+                ((a + b) * 0.5).map(srgb_of_linear)
             }
             Output::Anaglyph => {
                 Vec3::new(left.dot(weights), right.dot(weights), right.dot(weights))
@@ -142,8 +126,8 @@ impl Pictures {
                     [0.378476, 0.73364, -0.0184503],
                     [-0.0721527, -0.112961, 1.2264],
                 ]);
-                let sum = l * left.map(linear) + r * right.map(linear);
-                sum.clamp(Vec3::ZERO, Vec3::ONE).map(encoded)
+                let sum = l * left.map(linear_of_srgb) + r * right.map(linear_of_srgb);
+                sum.clamp(Vec3::ZERO, Vec3::ONE).map(srgb_of_linear)
             }
             Output::Headset => self.headset(x, y),
         }
