@@ -105,3 +105,38 @@ impl Camera {
         self.clip_from_view(aspect) * self.world_from_view.inverse()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_and_far_planes_and_the_pictures_corners_are_those_of_clip_space() {
+        let aspect = 1.5;
+        let perspective = Projection::Perspective {
+            fov_y_rad: std::f32::consts::FRAC_PI_2,
+            near_m: 0.5,
+        };
+        let parallel = Projection::Orthographic {
+            height_m: 4.0,
+            near_m: 0.5,
+            far_m: 8.5,
+        };
+        // A distance in metres, half the picture's height there, and the depth.
+        for (projection, places) in [
+            (perspective, [(0.5, 0.5, 1.0), (4.0, 4.0, 0.125)]),
+            (parallel, [(0.5, 2.0, 1.0), (8.5, 2.0, 0.0)]),
+        ] {
+            let camera = Camera {
+                projection,
+                ..Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0)
+            };
+            for (distance, half, depth) in places {
+                let corner = Vec3::new(aspect * half, half, -distance);
+                let found = camera.clip_from_world(aspect).project_point3(corner);
+                let expected = Vec3::new(1.0, 1.0, depth);
+                assert!(found.abs_diff_eq(expected, 1e-6), "{projection:?}: {found}");
+            }
+        }
+    }
+}

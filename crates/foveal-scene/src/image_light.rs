@@ -115,6 +115,44 @@ pub(crate) fn irradiance_of(side: usize, radiance: &[[f32; 3]]) -> [[f32; 3]; 9]
 mod tests {
     use super::*;
 
+    /// The cosine takes pi of what is alike everywhere, 2 pi / 3 of what grows along an axis, and
+    /// pi / 4 of what is quadratic (Ramamoorthi and Hanrahan 2001).
+    #[test]
+    fn irradiance_of_each_harmonic_is_its_part_of_the_radiance() {
+        use std::f32::consts::{FRAC_PI_4, PI};
+        type Radiance = fn(Vec3) -> f32;
+        let cases: [(f32, Radiance); 9] = [
+            (PI, |_| 1.0),
+            (PI / 1.5, |d| d.x),
+            (PI / 1.5, |d| d.y),
+            (PI / 1.5, |d| d.z),
+            (FRAC_PI_4, |d| d.x * d.y),
+            (FRAC_PI_4, |d| d.y * d.z),
+            (FRAC_PI_4, |d| d.x * d.z),
+            (FRAC_PI_4, |d| d.x * d.x - d.y * d.y),
+            (FRAC_PI_4, |d| 3.0 * d.z * d.z - 1.0),
+        ];
+        let side = 32;
+        let center = |i: usize| (i as f32 + 0.5) * 2.0 / side as f32 - 1.0;
+        let directions: Vec<Vec3> = (0..6 * side * side)
+            .map(|i| direction_of(i / (side * side), center(i % side), center(i / side % side)))
+            .map(Vec3::normalize)
+            .collect();
+        for (number, (part, radiance)) in cases.into_iter().enumerate() {
+            let texels: Vec<_> = directions.iter().map(|&d| [radiance(d); 3]).collect();
+            let coefficients = irradiance_of(side, &texels);
+            for &d in directions.iter().step_by(97) {
+                let terms = coefficients.iter().zip(harmonics(d));
+                let found: f32 = terms.map(|(c, harmonic)| c[1] * harmonic).sum();
+                let expected = part * radiance(d);
+                assert!(
+                    (found - expected).abs() < 0.02,
+                    "{number}, {d}: {found} not {expected}"
+                );
+            }
+        }
+    }
+
     #[test]
     fn what_lacks_texels_is_not_halved() {
         for (side, texels) in [(4, 95), (4, 97), (4, 0), (4, 6), (u32::MAX, 6)] {

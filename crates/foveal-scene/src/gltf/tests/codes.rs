@@ -31,6 +31,15 @@ fn errors_have_the_code_of_their_cause() {
         (Code::ExtensionRequired, |file| {
             file.push("extensionsRequired", json!("ACME_surfaces"));
         }),
+        (Code::VersionUnsupported, |file| {
+            file.json["asset"]["version"] = json!("1.0");
+        }),
+        (Code::VersionUnsupported, |file| {
+            file.json["asset"]["minVersion"] = json!("2.1");
+        }),
+        (Code::AccessorStride, |file| {
+            file.json["bufferViews"][0]["byteStride"] = json!(8);
+        }),
         (Code::BufferTooShort, |file| {
             file.push(
                 "bufferViews",
@@ -51,8 +60,12 @@ fn errors_have_the_code_of_their_cause() {
     let error = File::with_triangle().load_with(&options).unwrap_err();
     assert_eq!(error.code(), Code::LimitExceeded, "{error}");
     let none = |_: &str| Err("no files".into());
-    let error = load_bytes(b"text", "a.glb", &LoadOptions::default(), &none).unwrap_err();
-    assert_eq!(error.code(), Code::NotGltf, "{error}");
+    let mut newer = File::with_triangle().glb();
+    newer[4] = 3;
+    for bytes in [&b"text"[..], &newer] {
+        let error = load_bytes(bytes, "a.glb", &LoadOptions::default(), &none).unwrap_err();
+        assert_eq!(error.code(), Code::NotGltf, "{error}");
+    }
 }
 
 #[test]
@@ -112,11 +125,35 @@ fn errors_name_the_whole_place() {
     assert!(text.contains(place), "{text}");
 }
 
+/// Adds a clip that moves the node by so many numbers.
+fn clip(file: &mut File, times: &[f32], numbers: usize) {
+    let input = file.floats(times, "SCALAR");
+    let output = file.floats(&vec![0.0; numbers], "VEC3");
+    let target = json!({ "node": 0, "path": "translation" });
+    file.push(
+        "animations",
+        json!({
+            "samplers": [{ "input": input, "output": output }],
+            "channels": [{ "sampler": 0, "target": target }],
+        }),
+    );
+}
+
 #[test]
 fn warnings_have_the_code_of_their_cause() {
     let cases: &[(Code, Change)] = &[
         (Code::ExtensionIgnored, |file| {
             file.push("extensionsUsed", json!("ACME_surfaces"));
+        }),
+        (Code::NodeRoot, |file| {
+            let child = file.push("nodes", json!({}));
+            file.node()["children"] = json!([child]);
+            file.json["scenes"][0]["nodes"] = json!([0, child]);
+        }),
+        (Code::Animation, |file| clip(file, &[0.0, 2.0, 1.0], 9)),
+        (Code::Animation, |file| clip(file, &[0.0, 1.0, 2.0], 6)),
+        (Code::Skin, |file| {
+            file.attribute("WEIGHTS_0", &[0.0; 12], "VEC4");
         }),
         (Code::NodeTransform, |file| {
             let one = glam::Mat4::IDENTITY.to_cols_array();

@@ -12,6 +12,7 @@ mod lobes;
 mod materials;
 mod motion;
 mod nodes;
+mod numbers;
 mod pointers;
 mod unneeded;
 
