@@ -154,6 +154,25 @@ mod tests {
     }
 
     #[test]
+    fn sides_are_halved_to_means_of_four_texels() {
+        let mut light = ImageLight {
+            name: String::new(),
+            rotation: Quat::IDENTITY,
+            intensity: 1.0,
+            side: 4,
+            radiance: (0..96u8).map(|i| [f32::from(i), 0.0, 1.0]).collect(),
+            irradiance: [[0.0; 3]; 9],
+        };
+        light.halve_to(2);
+        assert_eq!(light.side, 2);
+        // Of rows of four texels: the first, 16 numbers a side.
+        let means =
+            (0..6u8).flat_map(|face| [2.5, 4.5, 10.5, 12.5].map(|m| m + 16.0 * f32::from(face)));
+        let expected: Vec<[f32; 3]> = means.map(|mean| [mean, 0.0, 1.0]).collect();
+        assert_eq!(light.radiance[..], expected);
+    }
+
+    #[test]
     fn what_lacks_texels_is_not_halved() {
         for (side, texels) in [(4, 95), (4, 97), (4, 0), (4, 6), (u32::MAX, 6)] {
             let mut light = ImageLight {

@@ -1,5 +1,6 @@
 //! OBJ and PLY files made on the spot.
 
+mod colors;
 mod libraries;
 mod lines;
 mod numbers;
@@ -119,20 +120,6 @@ fn faces_of_one_name_and_material_are_one_object() {
     assert_eq!(names, ["a", "b"]);
     let codes: Vec<Code> = scene.warnings.iter().map(|w| w.code).collect();
     assert_eq!(codes, [Code::MaterialUnreadable, Code::Normals]);
-}
-
-#[test]
-fn colours_count_where_all_vertices_have_one() {
-    let with = |color: &str| {
-        let text = format!("v 0 0 0 1 0 0.5\nv 1 0 0 {color}\nv 0 1 0 1 0 0.5\nf 1 2 3\n");
-        let scene = load("a.obj", text.as_bytes(), &[]).unwrap();
-        scene.meshes[0].vertices[0].color
-    };
-    let [r, g, b, _] = with("1 0 0.5");
-    assert_eq!((r, g), (u16::MAX, 0));
-    // As displays show it: half is a fifth of the light.
-    assert!(b.abs_diff(14027) <= 2, "{b}");
-    assert_eq!(with(""), [u16::MAX; 4]);
 }
 
 #[test]
@@ -298,30 +285,6 @@ fn a_ply_file_is_read_with_colours_and_texture_coordinates() {
     assert!(blue.abs_diff(32_957) <= 2, "{blue}");
     let text = "1 of 2 faces have fewer than three corners or name vertices that do not exist, and are left out";
     assert_eq!(scene.warnings[0].text, text);
-}
-
-#[test]
-fn dark_colours_stay_apart() {
-    let mut text = String::from("ply\nformat ascii 1.0\nelement vertex 30\n");
-    for axis in ["x", "y", "z"] {
-        text += &format!("property float {axis}\n");
-    }
-    for channel in ["red", "green", "blue"] {
-        text += &format!("property uchar {channel}\n");
-    }
-    text += "element face 10\nproperty list uchar int vertex_indices\nend_header\n";
-    for i in 0..30 {
-        text += &format!("{i} {} 0 {i} {i} {i}\n", i * i);
-    }
-    for i in 0..10 {
-        text += &format!("3 {} {} {}\n", 3 * i, 3 * i + 1, 3 * i + 2);
-    }
-    let scene = load("scan.ply", text.as_bytes(), &[]).unwrap();
-    let colors = scene.meshes[0].vertices.iter().map(|v| v.color[0]);
-    let apart: std::collections::BTreeSet<u16> = colors.collect();
-    assert_eq!(apart.len(), 30);
-    // IEC 61966-2-1: 1 of 255 is 0.000304 of the light.
-    assert_eq!(apart.iter().nth(1), Some(&20));
 }
 
 /// The square without colours in binary.

@@ -108,6 +108,12 @@ fn errors_name_the_whole_place() {
                 file.json["bufferViews"][0]["byteStride"] = json!(0);
             },
         ),
+        (
+            "bufferViews[0].byteStride: is 253, outside 1 to 252",
+            |file| {
+                file.json["bufferViews"][0]["byteStride"] = json!(253);
+            },
+        ),
     ];
     for (place, change) in cases {
         let mut file = File::with_triangle();
@@ -152,6 +158,11 @@ fn warnings_have_the_code_of_their_cause() {
         }),
         (Code::Animation, |file| clip(file, &[0.0, 2.0, 1.0], 9)),
         (Code::Animation, |file| clip(file, &[0.0, 1.0, 2.0], 6)),
+        (Code::MorphWeights, |file| {
+            let moved = file.floats(&[0.0; 9], "VEC3");
+            file.primitive()["targets"] = json!([{ "POSITION": moved }]);
+            file.json["meshes"][0]["weights"] = json!([0.5, 0.5]);
+        }),
         (Code::Skin, |file| {
             file.attribute("WEIGHTS_0", &[0.0; 12], "VEC4");
         }),

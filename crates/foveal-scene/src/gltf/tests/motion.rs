@@ -349,6 +349,7 @@ fn generated_tangents_follow_morph_targets_that_give_none() {
         let scene = file.load();
         for vertex in &scene.meshes[scene.instances[0].mesh as usize].vertices {
             assert!(near(&vertex.tangent[..3], &tangent), "{:?}", vertex.tangent);
+            assert_eq!(vertex.tangent[3].abs(), 1.0);
         }
     }
 }
