@@ -436,7 +436,7 @@ impl App {
     }
 }
 
-/// Text with the lines that it has, and none of the characters that would change what is around it.
+/// Text line by line, without control characters that would change the text around it.
 fn printable_lines(text: &str) -> String {
     let lines: Vec<String> = text.lines().map(foveal_scene::printable).collect();
     lines.join("\n")

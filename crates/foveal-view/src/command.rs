@@ -63,8 +63,8 @@ fn clip_word(clip: &Clip, clips: &[(String, f32)]) -> String {
     }
 }
 
-/// A number where a name may stand: a name that looks like it would come before it, so that it has
-/// zeros in front until none does.
+/// A clip's number, as the flag takes it beside names. A name of the same spelling would be taken
+/// first: zeros go in front until no clip has that name.
 fn number_word<'n>(number: usize, names: impl Iterator<Item = &'n str> + Clone) -> String {
     let mut word = number.to_string();
     while names.clone().any(|name| name == word) {

@@ -1,8 +1,8 @@
 //! What keys and pointer do: the list that F1, the line below the picture and the program's help
 //! show.
 
-/// A key as it is written on it, what it does, and what it does in a word for the line below the
-/// picture; an empty word leaves it out there.
+/// A key's name, what it does, and a word for that in the line below the picture, which leaves keys
+/// with an empty word out.
 pub(crate) const ALL: [(&str, &str, &str); 26] = [
     ("F1", "this list", "all keys"),
     ("Ctrl+O", "open a scene", "open"),

@@ -48,9 +48,9 @@ mod testing;
 pub struct Frame<'a> {
     /// Where the frame is seen from.
     pub camera: &'a Camera,
-    /// Where the frame before it was seen from, for motion vectors and for what is kept from frame
-    /// to frame, which is given up where this is not the camera that was drawn last; `None`, or with
-    /// two eyes an orthographic camera: from the same place.
+    /// Where the frame before was seen from, for motion vectors. Unless this is the camera that was
+    /// drawn last, nothing is kept from that frame. `None` means the same place as
+    /// [`camera`](Self::camera); so does an orthographic camera with two eyes.
     pub previous_camera: Option<&'a Camera>,
 }
 

@@ -384,7 +384,7 @@ struct Pixels {
     alone: u64,
     /// It joins their partial coverage, or begins it.
     joined: u64,
-    /// Of those that it joins, the ones that are complete by it.
+    /// Those of the joined pixels whose coverage it completes.
     full: u64,
 }
 

@@ -26,9 +26,9 @@ const MAX_PARTS: usize = 64;
 const PARTS_PER_THREAD: usize = 4;
 /// Fewest groups of eight clusters that are worth a part.
 const LEAST_GROUPS: usize = 32;
-/// With a view region, clusters hide next to nothing if their quads are in the mean shorter than
-/// this many shifts: where the surface continues at every edge, and that much more where it ends or
-/// bends at all of them.
+/// With a view region a cluster hides next to nothing if its quads are, in the mean, shorter than
+/// so many shifts: `SHIFTS` for a surface that continues at every edge, and `SHIFTS_OF_CREASES`
+/// more for one that ends or bends at every edge.
 const SHIFTS: f32 = 4.0;
 const SHIFTS_OF_CREASES: f32 = 8.0;
 

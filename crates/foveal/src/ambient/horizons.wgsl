@@ -26,14 +26,14 @@ struct AmbientOcclusion {
 
 const PI: f32 = 3.14159265;
 
-// Slices of the hemisphere that a place looks along, where it is a pixel and where it stands for a
-// block; both sides of a slice have so many steps.
+// Slices of the hemisphere that a pixel looks along, those of a place that stands for a block of
+// pixels, and steps along each side of a slice.
 const SLICES: u32 = 2u;
 const BLOCK_SLICES: u32 = 4u;
 const STEPS: u32 = 4u;
 
-// Sine of the angle above a surface below which depth's rounding, and a facet's bend, may be what
-// rises, and the one from which on an occluder counts in full.
+// Sines of angles above a surface. Below the first, what seems to rise may be depth's rounding or
+// the bend between facets; from the second on an occluder counts in full.
 const LEAST_RISE: f32 = 0.02;
 const FULL_RISE: f32 = 0.06;
 

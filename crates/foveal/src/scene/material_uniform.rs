@@ -59,10 +59,10 @@ pub(super) fn is_of_two(slot: Option<TextureRef>, textures: &[Texture]) -> bool 
     texture.is_some_and(|texture| texture.encoding == Encoding::Bc5)
 }
 
-/// What the shader is specialized to: one bit per texture slot in use, one for unlit, one for
-/// procedural, one where a texture is read elsewhere than at the first UV set as it is, one where
-/// textures are read at different places, one where what is not metal has a reflectance of its own,
-/// one where the normal map has x and y alone. `textures`: the scene's, with or without texels.
+/// Bits by which the shader is specialized: one per texture slot in use, and one each for an unlit
+/// material, a procedural one, texture coordinates other than the first set as it is, coordinates
+/// that differ between textures, a dielectric reflectance of its own, and a normal map of x and y
+/// alone. `textures`: the scene's, with or without texels.
 pub(crate) fn material_class(material: &Material, textures: &[Texture]) -> u32 {
     let slots = slots(material);
     let in_use = slots

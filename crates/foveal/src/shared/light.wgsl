@@ -14,6 +14,7 @@ struct Light {
     // Of the rays' travel, unit.
     direction: vec3f,
     spot_scale: f32,
+    // No shader reads the rest: the CPU plans shadows by it (`shadow/plan.rs`, `shadow/rays.rs`).
     // Cosine and sine of the cone's half angle; (-1, 0) without a cone.
     cone_cos: f32,
     cone_sin: f32,

@@ -65,7 +65,8 @@ fn unit_above(n: vec2f) -> vec3f {
     return vec3f(n, sqrt(max(1.0 - dot(n, n), 1e-6)));
 }
 
-// Slots that share one have it in common, which spares shaders that look it up pixel by pixel.
+// Where all slots share one map it is the first, a constant index: most shaders then look no map up
+// by pixel.
 fn uv_map(slot: u32) -> UvMap {
     if (MATERIAL_CLASS & HAS_OWN_UV_MAPS) == 0u {
         return material.uv[0];

@@ -16,9 +16,9 @@ fn cut_at_near(end: vec4f, other: vec4f) -> f32 {
     return select(0.0, a / (a - b), crosses);
 }
 
-// Before its place, towards the eye, as far as a stroke of a width in pixels reaches from its middle,
-// and half a pixel: so far the surface on which it lies may come before it at its border, where it is
-// seen at 45 degrees. Never beyond the near plane.
+// The depth of a stroke, moved towards the eye by half its width in pixels and half a pixel: by so
+// much a surface that the stroke lies on, seen at 45 degrees, is nearer at the stroke's border. Never
+// beyond the near plane.
 fn raised(clip: vec4f, view: u32, pixels: f32) -> f32 {
     // Of a pixel, at distance 1 in a perspective.
     let side = 2.0 * abs(frame.views[view].view_from_ndc.y) / frame.size.y;
