@@ -102,7 +102,14 @@ pub(crate) fn missing(
         ),
         "display" => unless(coarse || variable || compares, EYE),
         "gaze" => unless(coarse || variable || compares, EYE),
-        "quality" => unless(shading != Shading::Full, "Needs Shading: coarse"),
+        "quality" => unless(
+            shading != Shading::Full,
+            "Needs Shading: coarse or variable",
+        )
+        .or(unless(
+            uses(s, RateSource::Foveated) || keeps_light(s),
+            "Needs Rate from: foveated",
+        )),
         "gaze-shift" => unless(stereo, EYES).or(unless(
             shading != Shading::Full,
             "Needs Shading: coarse or variable",
@@ -166,6 +173,11 @@ fn rate(key: &str, s: &Settings) -> Option<&'static str> {
     (!has_effect).then_some(why)
 }
 
+/// Whether light is kept from frame to frame, by the quality that is aimed at.
+fn keeps_light(s: &Settings) -> bool {
+    s.shading.mode == Shading::Coarse && s.coarse.history && history(s).is_none()
+}
+
 fn history(s: &Settings) -> Option<&'static str> {
     if s.coarse.composite != Composite::Light {
         Some("Needs Composite: light")
@@ -211,10 +223,7 @@ pub(crate) fn refused(
     draft: &Table,
     abilities: Abilities,
 ) -> Option<String> {
-    if abilities.is_reduced
-        && setting.is_in_reduced_set()
-        && !setting.has_name_in_reduced_set(choice)
-    {
+    if abilities.is_reduced && !setting.has_name_in_reduced_set(choice) {
         return Some(BEYOND_OPENGL.to_owned());
     }
     let mut table = draft.clone();
@@ -307,6 +316,16 @@ mod tests {
 
     #[test]
     fn every_rule_is_of_a_setting_and_can_be_met() {
+        let (rules, _) = include_str!("needs.rs").split_once("#[cfg(test)]").unwrap();
+        let is_key = |text: &&str| {
+            let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+            !text.is_empty() && text.chars().all(fits)
+        };
+        let keys: Vec<&str> = rules.split('"').skip(1).step_by(2).filter(is_key).collect();
+        assert!(keys.len() > 50, "{keys:?}");
+        for key in keys {
+            assert!(Settings::ALL.iter().any(|s| s.key == key), "{key}");
+        }
         let s = Settings::default();
         let noted: Vec<&str> = (Settings::ALL.iter())
             .map(|setting| setting.key)

@@ -41,11 +41,11 @@ impl Setting {
         !MISSING_STAGES.contains(&self.stage) && !MISSING_KEYS.contains(&self.key)
     }
 
-    /// Whether such devices offer a choice of this name, where the setting is a choice and has an
-    /// effect there.
+    /// Whether such devices can draw this choice of a setting that
+    /// [has an effect](Self::is_in_reduced_set) there.
     #[must_use]
     pub fn has_name_in_reduced_set(&self, name: &str) -> bool {
-        self.is_in_reduced_set() && !MISSING_NAMES.contains(&(self.key, name))
+        !MISSING_NAMES.contains(&(self.key, name))
     }
 }
 
