@@ -186,7 +186,7 @@ fn every_output_equals_its_twin() {
         });
         assert_equals_twin(&scene, settings);
     }
-    for lens in ["cardboard-v1", "dk1"] {
+    for lens in ["cardboard-v1", "dk1", "0.2,0.1,0.02,0.99,-0.01,1.01,0.02"] {
         let settings = two_eyes(101, 77).with(|s| {
             s.stereo.output = Output::Headset;
             s.stereo.lens = lens.parse().expect("it can be read");
