@@ -107,7 +107,7 @@ pub(crate) fn missing(
             "Needs Shading: coarse or variable",
         )
         .or(unless(
-            uses(s, RateSource::Foveated) || keeps_light(s),
+            uses(s, RateSource::Foveated) || s.keeps_light(),
             "Needs Rate from: foveated",
         )),
         "gaze-shift" => unless(stereo, EYES).or(unless(
@@ -171,11 +171,6 @@ fn rate(key: &str, s: &Settings) -> Option<&'static str> {
         _ => (true, ""),
     };
     (!has_effect).then_some(why)
-}
-
-/// Whether light is kept from frame to frame, by the quality that is aimed at.
-fn keeps_light(s: &Settings) -> bool {
-    s.shading.mode == Shading::Coarse && s.coarse.history && history(s).is_none()
 }
 
 fn history(s: &Settings) -> Option<&'static str> {
