@@ -360,7 +360,7 @@ pub(crate) fn shade(
 pub(super) const WIDTH: u32 = 65;
 pub(super) const HEIGHT: u32 = 43;
 
-/// The radiance target's texels, red, green, blue.
+/// Asserts that full shading draws what the twin makes of the same G-buffer.
 pub(super) fn assert_equals_twin(scene: &Scene, camera: &Camera, settings: &Settings) {
     let renderer = rendered(scene, camera, settings);
     let words: Vec<[u32; 4]> = texels(&renderer.targets().gbuffer.surface_view);

@@ -294,9 +294,9 @@ fn rim_passing(tile: ShadowTile, at: vec2f, depth: f32) -> f32 {
     return mix(mix(q.w, q.z, f.x), mix(q.x, q.y, f.x), f.y);
 }
 
-// The largest difference within a block, as a variance. Found by measurement, as the part of it that
-// counts (composite/gather.wgsl): samples hold deviations up to what lights them, which is little in
-// shadow.
+// Variance for each unit of the largest difference within a block. Found by measurement together with
+// `WITHIN_A_BLOCK` (composite/gather.wgsl). With a larger one more is cut off: a sample holds deviations of
+// up to the light on itself, which is little in shadow.
 const VARIANCE_OF_APART: f32 = 0.2;
 
 // By how much the part of a light's rays that reaches four pixels at a rim differs from the sample's where

@@ -50,7 +50,7 @@ struct Block {
     second: Rim,
 }
 
-// Whether all eight are looked at, or the first four.
+// Whether all eight are looked at, or only the first four.
 override BOTH_RIMS: bool = true;
 
 const NO_RIM: Rim = Rim(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
@@ -60,8 +60,8 @@ const PIXEL: Block = Block(NO_RIM, NO_RIM);
 struct Arriving {
     // Part of them that reaches the sample.
     part: f32,
-    // What counts as its variance within the sample's block, by how much it differs at the pixel of the rim
-    // where it differs most.
+    // Variance of that part within the sample's block, estimated from the pixel at the rim whose part
+    // differs most from the sample's.
     variance: f32,
 }
 

@@ -68,9 +68,9 @@ fn rim_of(block: vec2u, level: u32, quarters: vec2u, s: Surface) -> vec4f {
     return select(vec4f(0.0), vec4f(offset, 1.0), is_same);
 }
 
-// Four places at a block's rim, one on each side: `quarters` along the upper one, and as it is turned.
-// Together with the samples in the middle of blocks they lie in as many columns, and rows, as there are
-// quarters.
+// Four places at a block's rim, one on each side: the first at so many quarters of the upper side, the
+// others where quarter turns of the block take it. No two lie in one column or row, nor does the sample in
+// the middle share theirs.
 fn four_of(block: vec2u, level: u32, quarters: u32, s: Surface) -> Rim {
     let left = 4u - quarters;
     let a = rim_of(block, level, vec2u(quarters, 0u), s);
@@ -85,6 +85,7 @@ fn four_of(block: vec2u, level: u32, quarters: u32, s: Surface) -> Rim {
     );
 }
 
+// The rim of a block, by eight places or, without BOTH_RIMS, by four.
 fn block_of(block: vec2u, level: u32, s: Surface) -> Block {
     var second = NO_RIM;
     if BOTH_RIMS {

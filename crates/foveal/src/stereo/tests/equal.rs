@@ -141,6 +141,7 @@ fn the_right_eye_sees_textures_as_one_eye_does_at_odd_widths() {
             s.stereo.mode = Stereo::Instanced;
             s.stereo.ipd_m = 0.0;
             s.stereo.output = crate::Output::SideBySide;
+            // Another gaze has its own picture.
             s.stereo.gaze_shift = [0.0, f32::MIN_POSITIVE];
         });
         let [_, right] = halves(&scene, camera, &both);
