@@ -18,6 +18,7 @@ fn main() {
         furniture: 30,
         doors: true,
         lights: 0,
+        range: 15.0,
     };
     example::run("doors", house, &Mode::OF_CAMERAS);
 }

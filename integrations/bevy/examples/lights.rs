@@ -4,8 +4,8 @@
 //! `cargo run --example lights` opens a window: 1, 2, 3 and 4 switch the way of culling (the frustum
 //! alone, Bevy's GPU culling, this crate's for the camera, and for lights too), O shows the overlay,
 //! space stops the walk. `-- --frames 100` draws without a window instead and prints what each way costs. `--size 640x360`,
-//! `--side 12` (rooms along each side), `--furniture 30` (pieces a room) and `--lights 2` (with
-//! shadows) change the scene, `--msaa 4` its samples.
+//! `--side 12` (rooms along each side), `--furniture 30` (pieces a room), `--lights 2` (with
+//! shadows) and `--range 15` (how far they shine, metres) change the scene, `--msaa 4` its samples.
 
 mod shared;
 
@@ -19,6 +19,7 @@ fn main() {
         furniture: 30,
         doors: false,
         lights: 2,
+        range: 15.0,
     };
     example::run("lights", house, &Mode::OF_LIGHTS);
 }

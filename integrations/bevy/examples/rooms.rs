@@ -18,6 +18,7 @@ fn main() {
         furniture: 30,
         doors: false,
         lights: 0,
+        range: 15.0,
     };
     example::run("rooms", house, &Mode::OF_CAMERAS);
 }

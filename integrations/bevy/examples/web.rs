@@ -22,6 +22,7 @@ const HOUSE: House = House {
     furniture: 20,
     doors: false,
     lights: 1,
+    range: 15.0,
 };
 
 fn main() {

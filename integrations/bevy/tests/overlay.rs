@@ -22,6 +22,7 @@ fn the_overlay_shows_boxes_and_depth_while_its_resource_exists() {
         furniture: 10,
         doors: false,
         lights: 0,
+        range: 15.0,
     };
     let mut app = Headless::new(size, Msaa::Off, |world| {
         house.spawn(world);

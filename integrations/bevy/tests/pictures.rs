@@ -62,6 +62,7 @@ fn pictures_of_a_walk_are_the_same_with_and_without_culling() {
         furniture: 20,
         doors: true,
         lights: 0,
+        range: 15.0,
     };
     // A size that is no multiple of the buffer's, and a sample per pixel.
     let odd = walk(house, UVec2::new(317, 179), Msaa::Off, 60);

@@ -20,6 +20,7 @@ pub fn run(name: &str, default: House, modes: &[Mode]) {
         furniture: arguments.number("furniture", default.furniture),
         doors: default.doors,
         lights: arguments.number("lights", default.lights),
+        range: arguments.number("range", default.range),
     };
     run_in(name, &arguments, house, house.lights, modes);
 }

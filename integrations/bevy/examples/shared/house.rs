@@ -30,6 +30,8 @@ pub struct House {
     /// Point lights with shadows, in rooms along the walk; without them a light without shadows
     /// goes with the camera.
     pub lights: usize,
+    /// How far they shine, metres.
+    pub range: f32,
 }
 
 /// A door leaf, turning about its hinge.
@@ -189,7 +191,7 @@ impl House {
                 PointLight {
                     shadow_maps_enabled: true,
                     intensity: 300_000.0,
-                    range: 15.0,
+                    range: self.range,
                     ..default()
                 },
                 Transform::from_translation(self.center_of(x, z) + Vec3::new(0.3, 2.6, 0.2)),
