@@ -53,8 +53,25 @@ function hasOtherPixels() {
 /** The last frame failed: the next one waits for a change, even where frames are drawn all the time. */
 let failed = false;
 
+/** Milliseconds that the browser has to ask for a frame. Firefox asks for none after a device is lost that showed none yet. */
+const LONGEST_WAIT_MS = 1000;
+
+/** Takes a turn at the browser's next frame, or without one when that does not come. */
+export function askForTurn() {
+  const frame = requestAnimationFrame((now) => {
+    clearTimeout(late);
+    turn(now);
+  });
+  const late = setTimeout(() => {
+    cancelAnimationFrame(frame);
+    // Nobody sees what a hidden page draws.
+    if (document.hidden) askForTurn();
+    else turn(performance.now());
+  }, LONGEST_WAIT_MS);
+}
+
 let last = performance.now();
-export async function turn(now) {
+async function turn(now) {
   const seconds = (now - last) / 1000;
   last = now;
   if (page.camera.step(seconds) || hasOtherPixels() || (page.always && !failed)) redraw();
@@ -72,7 +89,7 @@ export async function turn(now) {
       page.busy = false;
     }
   }
-  requestAnimationFrame(turn);
+  askForTurn();
 }
 
 /** Devices that were lost since the last frame. */

@@ -9,6 +9,9 @@ let waits = null;
 /** What a link says of the camera; without `up` it does not lean. */
 const PLACE = ['eye', 'target', 'up'];
 
+/** What a link holds beside settings. */
+const OWN = ['backend', 'scene', 'technique', 'split', 'scale', ...PLACE];
+
 /** Writes the link soon, once for all changes until then. */
 export function writeLink() {
   waits ??= setTimeout(writeLinkNow, LEAST_WAIT_MS);
@@ -52,20 +55,32 @@ function vector(text) {
   return numbers?.length === 3 && numbers.every(Number.isFinite) ? numbers : undefined;
 }
 
+/** Takes over a link's technique, divider and resolution, where they make sense; tells which do not. */
+function readView(link) {
+  const technique = page.techniques.find((t) => t.key === link.get('technique'));
+  page.technique = technique ?? page.techniques[0];
+  const split = Number(link.get('split') || NaN);
+  const isSplit = split >= 0 && split <= 1;
+  page.split = isSplit ? split : 0.5;
+  const scale = link.get('scale');
+  const isScale = [...$('scale').options].some((o) => o.value === scale);
+  page.scale = isScale ? scale : 'auto';
+  const read = { technique, split: isSplit, scale: isScale };
+  return Object.keys(read).filter((key) => link.has(key) && !read[key]);
+}
+
 /** Takes over an address's settings; tells which scene it names, and which place in it for the camera. */
 export function readLink(address) {
   const link = new URLSearchParams(address.slice(1));
-  const technique = page.techniques.find((t) => t.key === link.get('technique'));
-  page.technique = technique ?? page.techniques[0];
+  const unread = readView(link);
   page.settings.use(page.technique);
-  const unread = page.settings.read(link);
-  const split = Number(link.get('split') ?? 0.5);
-  page.split = split >= 0 && split <= 1 ? split : 0.5;
-  const scale = link.get('scale');
-  page.scale = [...$('scale').options].some((o) => o.value === scale) ? scale : 'auto';
   const scene = { name: link.get('scene') ?? 'demo', bytes: null };
-  const [eye, target, up] = PLACE.map((key) => vector(link.get(key)));
+  const vectors = PLACE.map((key) => vector(link.get(key)));
+  unread.push(...PLACE.filter((key, i) => link.has(key) && !vectors[i]));
+  const [eye, target, up] = vectors;
   const place = eye && target ? { eye, target, up } : null;
-  if (unread.length) say(`The link asks for what this page does not know: ${unread.join(', ')}`);
+  const words = unread.map((key) => `${key}=${link.get(key)}`);
+  words.push(...page.settings.read([...link].filter(([name]) => !OWN.includes(name))));
+  if (words.length) say(`The link asks for what this page does not know: ${words.join(', ')}`);
   return { scene, place };
 }

@@ -2,7 +2,7 @@
 
 import { showTechnique, wireChooser } from './chooser.js';
 import { placeSplit, wireControls } from './controls.js';
-import { openViewer, turn } from './frames.js';
+import { askForTurn, openViewer } from './frames.js';
 import { asksForReduced, keepLink, readLink, writeLink } from './link.js';
 import { $, alone, page } from './page.js';
 import { loadRenderer } from './renderer.js';
@@ -92,7 +92,7 @@ async function main() {
     await showLink(location.hash);
     if (!page.home && !page.stoppedAt && !page.lost) await showScene({ name: 'demo', bytes: null });
   });
-  requestAnimationFrame(turn);
+  askForTurn();
 }
 
 window.foveal = page;

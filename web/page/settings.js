@@ -41,14 +41,13 @@ export class Settings {
     }
   }
 
-  /** Takes over what a link says; tells what it could not read. */
-  read(link) {
+  /** Takes over a link's names and words of settings; tells which it could not read. */
+  read(words) {
     const unread = [];
-    for (const [name, text] of link) {
+    for (const [name, text] of words) {
       const [short, key] = name.split('.', 2);
       const side = Object.keys(SIDES).find((s) => SIDES[s] === short);
-      if (!side || key === undefined) continue;
-      const entry = this.entry(key);
+      const entry = side && this.entry(key);
       const value = entry && parse(entry, text);
       if (value === undefined) unread.push(`${name}=${text}`);
       else this.set(side, key, value);

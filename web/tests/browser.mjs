@@ -1,30 +1,73 @@
-// A real browser on SwiftShader, a page in it, and what both said.
+// A real browser, a page in it, and what both said: Chromium on SwiftShader, or with `BROWSER=firefox` Firefox on the
+// machine's own drivers, which needs a screen.
 
 import { existsSync, writeFileSync } from 'node:fs';
-import { chromium } from 'playwright-core';
+import { chromium, firefox } from 'playwright-core';
 import { serve } from '../serve.mjs';
 
 const QUIET = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
-/** What the browser offers. Without further words it is WebGL 2 alone. */
-const GRAPHICS = {
-  webgl2: [],
-  nothing: ['--disable-3d-apis'],
-  webgpu: ['--enable-unsafe-webgpu', '--enable-features=Vulkan', '--use-vulkan=swiftshader', '--use-angle=swiftshader', '--use-webgpu-adapter=swiftshader'],
+/** What each browser is told for what it is to offer. */
+const BROWSERS = {
+  chromium: {
+    type: chromium,
+    named: 'CHROMIUM',
+    paths: ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'],
+    package: 'chromium',
+    graphics: {
+      // What it offers without further words.
+      webgl2: { args: QUIET },
+      nothing: { args: [...QUIET, '--disable-3d-apis'] },
+      webgpu: { args: [...QUIET, '--enable-unsafe-webgpu', '--enable-features=Vulkan', '--use-vulkan=swiftshader', '--use-angle=swiftshader', '--use-webgpu-adapter=swiftshader'] },
+    },
+  },
+  firefox: {
+    type: firefox,
+    named: 'FIREFOX',
+    paths: ['/usr/bin/firefox-esr', '/usr/bin/firefox'],
+    package: 'firefox-esr',
+    graphics: {
+      webgl2: firefoxWith({ 'dom.webgpu.enabled': false }),
+      nothing: firefoxWith({ 'dom.webgpu.enabled': false, 'webgl.disabled': true }),
+      webgpu: firefoxWith({ 'dom.webgpu.enabled': true, 'gfx.webgpu.ignore-blocklist': true }),
+    },
+  },
 };
+
+/** As its makers build it; it has no WebGL without a screen. */
+function firefoxWith(firefoxUserPrefs) {
+  return { channel: 'moz-firefox', headless: false, firefoxUserPrefs };
+}
 
 /** Where a frame may take seconds, waiting may take a minute. */
 export const PATIENCE = 120_000;
 
-function executablePath() {
-  const found = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find((p) => p && existsSync(p));
-  if (!found) throw new Error('no Chromium: install Debian\'s package chromium, or name one in CHROMIUM');
-  return found;
+/** The browser that the tests are for. */
+export const BROWSER = process.env.BROWSER ?? 'chromium';
+
+/** For tests that Playwright can run in Chromium alone, with what they need. */
+export const inChromium = (needed) => ({ skip: BROWSER === 'chromium' ? false : `in ${BROWSER} Playwright has no ${needed}` });
+
+function launch(graphics) {
+  const browser = BROWSERS[BROWSER];
+  if (!browser) throw new Error(`BROWSER=${BROWSER}: the tests know ${Object.keys(BROWSERS).join(' and ')}`);
+  const executablePath = [process.env[browser.named], ...browser.paths].find((p) => p && existsSync(p));
+  if (!executablePath) throw new Error(`no ${BROWSER}: install Debian's package ${browser.package}, or name one in ${browser.named}`);
+  return browser.type.launch({ executablePath, ...browser.graphics[graphics] });
 }
 
-/** A browser with `graphics` (of `GRAPHICS`) and a server for the page, or for another in `folder`; `close` ends both. */
+/** As Playwright waits, at each of the page's frames, and by this process's clock: Firefox may ask for no more frames once a device is lost. */
+async function waitByBoth(page, wait, condition, asked) {
+  let ended = false;
+  const byClock = async () => {
+    while (!ended && !(await page.evaluate(condition, asked))) await new Promise((done) => setTimeout(done, 200));
+  };
+  return Promise.race([wait(condition, asked), byClock()]).finally(() => { ended = true; });
+}
+
+/** A browser that offers `graphics` (`webgpu`, `webgl2` or `nothing`), and a server for the page, or for another in `folder`; `close` ends both. */
 export async function open(graphics = 'webgpu', folder = undefined) {
   const server = await serve(0, folder);
-  const browser = await chromium.launch({ executablePath: executablePath(), args: [...QUIET, ...GRAPHICS[graphics]] });
+  const browser = await launch(graphics);
   const address = `http://localhost:${server.address().port}/`;
   return {
     address,
@@ -34,6 +77,8 @@ export async function open(graphics = 'webgpu', folder = undefined) {
       const context = await browser.newContext({ viewport, acceptDownloads: true });
       const page = await context.newPage();
       page.setDefaultTimeout(PATIENCE);
+      const wait = page.waitForFunction.bind(page);
+      if (BROWSER === 'firefox') page.waitForFunction = (condition, asked) => waitByBoth(page, wait, condition, asked);
       const said = [];
       page.on('console', (m) => { if (m.type() === 'error') said.push(m.text()); });
       page.on('pageerror', (e) => said.push(String(e)));

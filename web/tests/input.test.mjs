@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { open, picture, settled } from './browser.mjs';
+import { inChromium, open, picture, settled } from './browser.mjs';
 
 const SMALL = { width: 1000, height: 300 };
 
@@ -61,7 +61,7 @@ test('a lost device keeps the keyboard where it was, and nothing of the one befo
   await page.context().close();
 });
 
-test('the gaze goes where a finger taps', async () => {
+test('the gaze goes where a finger taps', inChromium('fingers'), async () => {
   const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=coarse', SMALL);
   await settled(page);
   const box = await page.locator('#stage').boundingBox();

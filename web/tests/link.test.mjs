@@ -127,3 +127,20 @@ test('a link holds which way is up where the camera looks straight down', async 
   assert.ok(difference(first, second) > 10, `${difference(first, second)}`);
   assert.ok(difference(turned, second) < 1, `${difference(turned, second)}`);
 });
+
+test('what a link says and the page does not know is named, and the rest is shown', async () => {
+  const unknown = ['technique=magic', 'split=2', 'scale=7', 'eye=1,2', 'middle.shadows=soft', 'left.magic=1', 'magic=1'];
+  const { page, said } = await site.visit(`#scene=cornell&right.shadows=soft&${unknown.join('&')}`, SMALL);
+  await settled(page);
+  const message = await page.locator('.message').textContent();
+  for (const word of unknown) assert.ok(message.includes(word), `${word}: ${message}`);
+  const shown = await page.evaluate(() => [window.foveal.scene.name, window.foveal.settings.sides.chosen.shadows, window.foveal.technique.key, window.foveal.split]);
+  assert.deepEqual(shown, ['cornell', 'soft', await page.evaluate(() => window.foveal.techniques[0].key), 0.5]);
+  await page.locator('.message button').click();
+  await page.evaluate(() => { location.hash = '#scene=cornell&backend=webgpu&technique=culling&split=0&scale=0.25&eye=0,1,3&target=0,1,0&up=0,1,0'; });
+  await page.waitForFunction(() => window.foveal.technique.key === 'culling');
+  await settled(page);
+  assert.equal(await page.locator('.message').count(), 0);
+  assert.deepEqual(said, []);
+  await page.context().close();
+});

@@ -4,14 +4,15 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
+import { BROWSER } from './browser.mjs';
 
 const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 
 /** Runs the program that FOVEAL names, or builds it first; tells what it printed. */
 export function foveal(...words) {
-  // The browser's own driver where it can be found: drivers differ in how they choose mip levels.
+  // Chromium's own driver where it can be found: drivers differ in how they choose mip levels.
   const driver = '/usr/lib/chromium/vk_swiftshader_icd.json';
-  const env = existsSync(driver) ? { ...process.env, VK_DRIVER_FILES: driver } : process.env;
+  const env = BROWSER === 'chromium' && existsSync(driver) ? { ...process.env, VK_DRIVER_FILES: driver } : process.env;
   const [program, ...first] = process.env.FOVEAL ? [process.env.FOVEAL] : ['cargo', 'run', '--quiet', '--package', 'foveal-cli', '--'];
   return execFileSync(program, [...first, ...words], { cwd: ROOT, encoding: 'utf8', env });
 }

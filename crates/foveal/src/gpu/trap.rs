@@ -62,10 +62,15 @@ impl ErrorTrap {
             let gpu = made.gpu.clone();
             let (internal, validation, memory) = reports;
             let (internal, validation, memory) = (internal.await, validation.await, memory.await);
-            // A loss is told when the device is asked, and makes errors of all else.
-            #[cfg(not(target_arch = "wasm32"))]
+            // A loss makes errors of all else. It is told when the device is asked; by browsers before
+            // they answer what they are asked after it (Firefox tells the errors first).
             if internal.is_some() || validation.is_some() || memory.is_some() {
+                #[cfg(not(target_arch = "wasm32"))]
                 let _ = gpu.poll(wgpu::PollType::Poll);
+                #[cfg(target_arch = "wasm32")]
+                let _ = (gpu.device.push_error_scope(wgpu::ErrorFilter::Internal))
+                    .pop()
+                    .await;
             }
             gpu.check_alive()?;
             #[cfg(not(test))]
