@@ -1,4 +1,4 @@
-// A real browser, a page in it, and what both said: Chromium on SwiftShader, or with `BROWSER=firefox` Firefox on the
+// A real browser, a page in it, and what both said: Chromium on SwiftShader, or with `FOVEAL_BROWSER=firefox` Firefox on the
 // machine's own drivers, which needs a screen.
 
 import { existsSync, writeFileSync } from 'node:fs';
@@ -42,14 +42,14 @@ function firefoxWith(firefoxUserPrefs) {
 export const PATIENCE = 120_000;
 
 /** The browser that the tests are for. */
-export const BROWSER = process.env.BROWSER ?? 'chromium';
+export const BROWSER = process.env.FOVEAL_BROWSER ?? 'chromium';
 
 /** For tests that Playwright can run in Chromium alone, with what they need. */
 export const inChromium = (needed) => ({ skip: BROWSER === 'chromium' ? false : `in ${BROWSER} Playwright has no ${needed}` });
 
 function launch(graphics) {
   const browser = BROWSERS[BROWSER];
-  if (!browser) throw new Error(`BROWSER=${BROWSER}: the tests know ${Object.keys(BROWSERS).join(' and ')}`);
+  if (!browser) throw new Error(`FOVEAL_BROWSER=${BROWSER}: the tests know ${Object.keys(BROWSERS).join(' and ')}`);
   const executablePath = [process.env[browser.named], ...browser.paths].find((p) => p && existsSync(p));
   if (!executablePath) throw new Error(`no ${BROWSER}: install Debian's package ${browser.package}, or name one in ${browser.named}`);
   return browser.type.launch({ executablePath, ...browser.graphics[graphics] });
