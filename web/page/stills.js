@@ -6,7 +6,7 @@ import { TECHNIQUES } from './techniques.js';
 export function showStills(cause) {
   for (const id of ['stage', 'panel']) $(id).hidden = true;
   $('without').hidden = false;
-  $('missing').textContent = `This page draws with WebGPU, or less with WebGL 2; this browser offers neither: ${cause}. Chrome, Edge, Safari 26 and Firefox 141 or newer have both. What you would see:`;
+  $('missing').textContent = `This page draws with WebGPU, or less with WebGL 2; this browser offers neither: ${cause}. Chrome, Edge and Safari 26 or newer have both, and Firefox 141 or newer on Windows; on Linux Firefox has WebGL 2. What you would see:`;
   for (const { key, name, text } of TECHNIQUES) {
     const figure = document.createElement('figure');
     const picture = document.createElement('img');
