@@ -450,6 +450,22 @@ test('where no device can be opened again the page says so, whatever is asked of
   await page.context().close();
 });
 
+test('where the browser asks for no frames any more the page goes on drawing', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
+  await settled(page);
+  await page.evaluate(() => { window.requestAnimationFrame = () => 0; });
+  const frames = () => page.evaluate(() => window.foveal.frames);
+  // The first one was asked for before.
+  for (let change = 0; change < 3; change += 1) {
+    const before = await frames();
+    await page.evaluate(() => { window.foveal.stale = true; });
+    for (let wait = 0; wait < 300 && (await frames()) === before; wait += 1) await page.waitForTimeout(100);
+    assert.ok((await frames()) > before, `change ${change}`);
+  }
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
 test('a picture that cannot be saved is said, and the page goes on', async () => {
   const { page, said } = await site.visit('#scene=cornell&scale=0.25', SMALL);
   const first = await picture(page);
