@@ -232,27 +232,52 @@ impl ViewCuller {
         threads: &dyn Threads,
         view: impl FnOnce(&[Aabb]) -> Result<View, CullError>,
     ) -> Outcome {
-        let mut outcome = Outcome::default();
-        self.take(list, boxes, listed);
-        outcome.refused = !self.test(occluders, threads, view);
-        self.remove(list, outcome)
+        let count = list.len();
+        self.take(list, boxes, listed, |_| true);
+        let refused = !self.test(occluders, threads, view);
+        Outcome {
+            listed: count,
+            hidden: self.remove(list),
+            refused,
+            ..Outcome::default()
+        }
     }
 
-    /// Takes in the entities of a list that may leave it.
-    pub(crate) fn take(&mut self, list: &[Entity], boxes: &Boxes<'_, '_>, listed: &Listed) {
+    /// Takes in the entities of a list that may leave it. Those whose box `condition` does not hold for
+    /// leave it at once; returns how many.
+    pub(crate) fn take(
+        &mut self,
+        list: &mut Vec<Entity>,
+        boxes: &Boxes<'_, '_>,
+        listed: &Listed,
+        condition: impl Fn(&Aabb) -> bool,
+    ) -> usize {
         self.is_current = false;
         self.boxes.clear();
         self.places.clear();
-        for (place, &entity) in (0..).zip(list) {
-            if listed.settled(entity)
-                && let Some(bounds) = boxes.of(entity)
-            {
+        let before = list.len();
+        let mut place = 0;
+        list.retain(|&entity| {
+            let bounds = listed.settled(entity).then(|| boxes.of(entity)).flatten();
+            if bounds.as_ref().is_some_and(|bounds| !condition(bounds)) {
+                return false;
+            }
+            if let Some(bounds) = bounds {
                 self.boxes.push(bounds);
                 self.places.push(place);
             }
-        }
+            place += 1;
+            true
+        });
         self.results.clear();
         self.results.resize(self.boxes.len(), Visibility::Visible);
+        before - list.len()
+    }
+
+    /// How many entities of the list may leave it.
+    #[cfg(feature = "bevy_light")]
+    pub(crate) fn tested(&self) -> usize {
+        self.boxes.len()
     }
 
     /// Tests what was taken in; returns whether that was possible.
@@ -298,13 +323,9 @@ impl ViewCuller {
         left_out
     }
 
-    /// Removes what was found to be hidden.
-    pub(crate) fn remove(&mut self, list: &mut Vec<Entity>, outcome: Outcome) -> Outcome {
-        Outcome {
-            listed: list.len(),
-            hidden: remove_hidden(list, &self.places, &self.results) - outcome.unseen,
-            ..outcome
-        }
+    /// Removes what was found to be hidden; returns how many.
+    pub(crate) fn remove(&mut self, list: &mut Vec<Entity>) -> usize {
+        remove_hidden(list, &self.places, &self.results)
     }
 
     /// Looks for boxes in the buffer of this frame.

@@ -123,6 +123,8 @@ mod reach;
 mod ready;
 #[cfg(feature = "bevy_light")]
 mod receivers;
+#[cfg(feature = "bevy_light")]
+mod shadow_map;
 mod stats;
 mod tasks;
 mod view;

@@ -5,16 +5,15 @@
 //! light that lights nothing that is seen is not drawn at all, if nothing else is on its entity.
 
 use crate::components::CpuOcclusionCulling;
-use crate::cull::{Boxes, Outcome, ViewCuller};
+use crate::cull::Boxes;
 use crate::left_out::LightsAlone;
 use crate::map_sizes::MapSizes;
-use crate::mask::{Mask, Projector};
 use crate::occluders::{Occluders, Range};
-use crate::reach::{Reach, SeenByLight, is_soft};
-use crate::ready::{Listed, ListedByView, Looks, Pipelines};
+use crate::reach::{Reach, is_soft};
+use crate::ready::{ListedByView, Looks, Pipelines};
 use crate::receivers::Receivers;
+use crate::shadow_map::{Cullers, Face, Faces};
 use crate::stats::CpuOcclusionStats;
-use crate::tasks::for_each;
 use crate::view::{Fit, NearSpace, clip_from_world};
 use bevy_camera::primitives::CUBE_MAP_FACES;
 use bevy_camera::visibility::{
@@ -30,69 +29,10 @@ use bevy_light::{
     DirectionalLight, NotShadowCaster, PointLight, SpotLight, VolumetricLight,
     spot_light_clip_from_view, spot_light_world_from_view,
 };
-use bevy_math::{Affine3A, DMat4, DVec3, Mat4};
-use bevy_platform::collections::HashMap;
+use bevy_math::{Affine3A, Mat4};
 use bevy_platform::time::Instant;
 use bevy_transform::components::{GlobalTransform, Transform};
 use core::f32::consts::FRAC_PI_2;
-use foveal_cull::{Aabb, SingleThread};
-
-/// Cullers by the size of their buffers.
-#[derive(Default)]
-pub(crate) struct Cullers(HashMap<(u32, u32), OfSize>);
-
-#[derive(Default)]
-struct OfSize {
-    cullers: Vec<ViewCuller>,
-    /// Frames since the last use.
-    idle: u32,
-}
-
-impl Cullers {
-    /// Forgets what has long been unused.
-    fn begin_frame(&mut self) {
-        self.0.retain(|_, of_size| {
-            of_size.idle += 1;
-            of_size.idle < 120
-        });
-    }
-
-    /// So many cullers of a size; fewer where there cannot be any.
-    fn of(&mut self, size: (u32, u32), count: usize) -> &mut [ViewCuller] {
-        let of_size = self.0.entry(size).or_default();
-        of_size.idle = 0;
-        while of_size.cullers.len() < count {
-            match ViewCuller::new(size) {
-                Ok(culler) => of_size.cullers.push(culler),
-                Err(_) => break,
-            }
-        }
-        &mut of_size.cullers
-    }
-}
-
-/// A shadow map of a light.
-struct Face<'a> {
-    clip_from_world: DMat4,
-    /// Casters before the near plane are drawn onto it.
-    casters_before_near: bool,
-    list: &'a mut Vec<Entity>,
-    outcome: Outcome,
-    /// Whether the light may light something that a camera sees here.
-    lights_seen: bool,
-}
-
-impl<'a> Face<'a> {
-    fn new(clip_from_world: DMat4, casters: &'a mut VisibleMeshEntities) -> Self {
-        Self {
-            clip_from_world,
-            casters_before_near: false,
-            list: &mut casters.entities,
-            outcome: Outcome::default(),
-            lights_seen: true,
-        }
-    }
-}
 
 /// A light whose shadow maps are culled.
 struct Light<'a> {
@@ -153,20 +93,14 @@ impl Frame<'_, '_, '_> {
             .map(|reach| reach.of(&self.receivers.seen));
         if !self.waiting && (on > 0 || seen.is_some()) {
             let occluders = &*self.occluders;
-            let occluders = (on > 0).then(|| (occluders, occluders.are_all_listed()));
-            let cullers = self.cullers.of(fit.size, faces.len());
-            refuse_from(cullers.len(), faces);
-            for_each(faces.iter_mut().zip(cullers), |(face, culler)| {
-                cull_face(
-                    face,
-                    culler,
-                    &fit,
-                    self.boxes,
-                    listed,
-                    occluders,
-                    seen.as_ref(),
-                );
-            });
+            let shared = Faces {
+                fit: &fit,
+                boxes: self.boxes,
+                listed,
+                occluders: (on > 0).then(|| (occluders, occluders.are_all_listed())),
+                seen: seen.as_ref(),
+            };
+            shared.cull(faces, self.cullers.of(fit.size, faces.len()));
         }
         let unseen = seen.is_some_and(|seen| !seen.anyway)
             && !self.receivers.lit_anywhere
@@ -176,53 +110,6 @@ impl Frame<'_, '_, '_> {
             face.outcome.add_to(self.stats, true);
         }
         unseen
-    }
-}
-
-/// Culls one shadow map. `occluders`: those that are switched on, and whether a view draws them only
-/// if it lists them.
-fn cull_face(
-    face: &mut Face<'_>,
-    culler: &mut ViewCuller,
-    fit: &Fit,
-    boxes: &Boxes<'_, '_>,
-    listed: &Listed,
-    occluders: Option<(&Occluders, bool)>,
-    seen: Option<&SeenByLight>,
-) {
-    let matrix = face.clip_from_world;
-    culler.take(face.list, boxes, listed);
-    let mut outcome = Outcome::default();
-    if let Some((occluders, _)) = occluders {
-        outcome.refused = !culler.test(&occluders.set, &SingleThread, |casters| {
-            fit.view(if face.casters_before_near {
-                with_near_before(matrix, casters)
-            } else {
-                matrix
-            })
-        });
-    }
-    if let Some(seen) = seen.filter(|_| !outcome.refused) {
-        let mut mask = Mask::new(Projector::new(matrix));
-        let lit = seen.receive(&mut mask, |boxes, results| {
-            // What is drawn in place of other occluders may be left out.
-            if occluders.is_some_and(|(_, all_listed)| all_listed) {
-                culler.look(boxes, results);
-            }
-        });
-        // What is new must be drawn for a while, and the light with it.
-        face.lights_seen = lit || !face.list.iter().all(|&entity| listed.settled(entity));
-        outcome.unseen = culler.keep(face.list, |entity, bounds| {
-            mask.shows(bounds, occluders.is_some_and(|(o, _)| o.is_on(entity)))
-        });
-    }
-    face.outcome = culler.remove(face.list, outcome);
-}
-
-/// Faces for which there is no culler keep everything.
-fn refuse_from(first: usize, faces: &mut [Face<'_>]) {
-    for face in faces.iter_mut().skip(first) {
-        face.outcome.refused = true;
     }
 }
 
@@ -401,78 +288,13 @@ fn drawn_angle(outer_angle: f32) -> f32 {
     }
 }
 
-/// An orthographic matrix of reversed depth whose near plane lies before all casters.
-fn with_near_before(clip_from_world: DMat4, casters: &[Aabb]) -> DMat4 {
-    let depth = clip_from_world.row(2);
-    let (along, offset) = (depth.truncate(), depth.w);
-    let nearest = casters
-        .iter()
-        .filter(|bounds| bounds.is_valid())
-        .map(|bounds| {
-            let (min, max) = (bounds.min.map(f64::from), bounds.max.map(f64::from));
-            let (min, max) = (DVec3::from(min), DVec3::from(max));
-            along.dot((min + max) * 0.5) + along.abs().dot((max - min) * 0.5) + offset
-        })
-        .fold(1.0, f64::max);
-    // Depth 1 moves there, and 0, the far plane, stays.
-    let scale = 1.0 / (nearest * 1.001);
-    DMat4::from_cols(
-        bevy_math::DVec4::X,
-        bevy_math::DVec4::Y,
-        bevy_math::DVec4::Z * scale,
-        bevy_math::DVec4::W,
-    ) * clip_from_world
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::components::OcclusionBufferSize;
-    use bevy_math::{DVec4, Vec3};
-
-    #[test]
-    fn cullers_that_cannot_be_made_are_refused_views_and_unused_ones_are_forgotten() {
-        let mut cullers = Cullers::default();
-        assert_eq!(cullers.of((16, 16), 6).len(), 6);
-        assert_eq!(cullers.of((0, 16), 1).len(), 0);
-        let mut lists = [(); 2].map(|()| VisibleMeshEntities::default());
-        let mut faces: Vec<Face> = lists
-            .iter_mut()
-            .map(|list| Face::new(DMat4::IDENTITY, list))
-            .collect();
-        refuse_from(1, &mut faces);
-        let refused = |face: &Face| face.outcome.refused;
-        assert!(!refused(&faces[0]) && refused(&faces[1]));
-        for _ in 0..200 {
-            cullers.begin_frame();
-            cullers.of((16, 16), 1);
-        }
-        assert!(cullers.0.contains_key(&(16, 16)) && !cullers.0.contains_key(&(0, 16)));
-    }
 
     #[test]
     fn wide_spot_lights_are_culled_as_they_are_drawn() {
         assert_eq!(drawn_angle(1.0).to_bits(), 1.0_f32.to_bits());
         assert!(drawn_angle(2.0) < FRAC_PI_2);
-    }
-
-    #[test]
-    fn the_near_plane_of_a_cascade_moves_before_its_casters() {
-        // 20 m wide, from z = 0 down to -100, with reversed depth.
-        let clip = Mat4::orthographic_rh(-10.0, 10.0, -10.0, 10.0, 100.0, 0.0).as_dmat4();
-        let depth = |m: DMat4, z: f64| (m * DVec4::new(0.0, 0.0, z, 1.0)).z;
-        assert!((depth(clip, 0.0) - 1.0).abs() < 1e-6 && depth(clip, -100.0).abs() < 1e-6);
-        let casters = [
-            Aabb::new(Vec3::splat(-1.0), Vec3::new(1.0, 1.0, 50.0)),
-            Aabb::EMPTY,
-        ];
-        let moved = with_near_before(clip, &casters);
-        assert!(depth(moved, 50.0) < 1.0 && depth(moved, 51.0) > 1.0);
-        assert!(depth(moved, -100.0).abs() < 1e-6);
-        let fit = Fit::of_shadow_map(OcclusionBufferSize::Exact, 1024).unwrap();
-        assert!(fit.view(moved).unwrap().eye.projection.is_orthographic());
-        // Nothing before it: it stays.
-        let behind = [Aabb::new(Vec3::splat(-50.0), Vec3::splat(-40.0))];
-        assert!((depth(with_near_before(clip, &behind), 0.0) - 1.0).abs() < 2e-3);
     }
 }

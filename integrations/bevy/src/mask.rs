@@ -12,7 +12,7 @@ const PARTS: usize = 32;
 
 /// What a shadow map sees of a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Footprint {
+pub(crate) struct Footprint {
     /// Least and greatest clip coordinates across and up; may lie beyond the map.
     low: [f64; 2],
     high: [f64; 2],
@@ -95,16 +95,15 @@ impl Projector {
 
     /// `None` where the box is nearer than all that casts a shadow.
     fn footprint(&self, bounds: &Aabb) -> Option<Footprint> {
-        let (min, max) = (bounds.min.map(f64::from), bounds.max.map(f64::from));
+        let corner = |corner: [f32; 3]| DVec3::from(corner.map(f64::from));
+        let (min, size) = (corner(bounds.min), corner(bounds.max) - corner(bounds.min));
+        // Of the corner of least coordinates, and by how much the box's sides change it.
+        let at_min = |row: DVec4| (row.truncate().dot(min) + row.w, row.truncate() * size);
+        let rows = [self.x, self.y, self.along].map(at_min);
         let mut found = Footprint::NOTHING;
         let corners: [DVec3; 8] = core::array::from_fn(|i| {
-            let pick = |axis: usize| [min, max][i >> axis & 1][axis];
-            let corner = DVec4::new(pick(0), pick(1), pick(2), 1.0);
-            DVec3::new(
-                self.x.dot(corner),
-                self.y.dot(corner),
-                self.along.dot(corner),
-            )
+            let far = |axis: usize| (i >> axis & 1) as f64;
+            DVec3::from(rows.map(|(at, by)| at + far(0) * by.x + far(1) * by.y + far(2) * by.z))
         });
         let Some(near) = self.near else {
             corners.iter().for_each(|c| found.take(c.x, c.y, c.z));
@@ -113,7 +112,8 @@ impl Projector {
         let mut all = true;
         for c in corners {
             if c.z >= near {
-                found.take(c.x / c.z, c.y / c.z, c.z);
+                let by_distance = c.z.recip();
+                found.take(c.x * by_distance, c.y * by_distance, c.z);
             } else {
                 all = false;
             }
@@ -142,17 +142,6 @@ pub(crate) struct Mask {
     all: Box<[f64]>,
 }
 
-/// What a shadow map has to do with a receiver.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Place {
-    /// It lies beside the map.
-    Beside,
-    /// It is nearer than what casts a shadow, in part at least, or may be lit.
-    Lit,
-    /// Occluders hide it: it is in shadow, whatever else is drawn.
-    InShadow,
-}
-
 impl Mask {
     /// The mask of a shadow map of which nothing is seen.
     pub(crate) fn new(projector: Projector) -> Self {
@@ -165,37 +154,27 @@ impl Mask {
     }
 
     /// Adds a receiver, whose box holds all places at which its shadows are looked up. `reach`: the
-    /// distance at which light ends. `in_shadow`: whether occluders hide it from the light.
-    pub(crate) fn receive(&mut self, bounds: &Aabb, reach: f64, in_shadow: bool) -> Place {
+    /// distance at which light ends. Returns what the map sees of it; `None` where it lies beside the
+    /// map.
+    pub(crate) fn receive(&mut self, bounds: &Aabb, reach: f64) -> Option<Footprint> {
         // Most receivers lie beside most faces of a cube map.
         if !self.projector.may_meet(bounds) {
-            return Place::Beside;
+            return None;
         }
-        let Some(seen) = self
-            .projector
-            .footprint(bounds)
-            .filter(Footprint::meets_map)
-        else {
-            return Place::Beside;
-        };
-        let farthest = match self.projector.near {
-            Some(_) => seen.farthest.min(reach),
-            None => seen.farthest,
-        };
-        let add = |parts: &mut [f64]| {
-            for row in seen.rows() {
-                for part in &mut parts[row] {
-                    *part = part.max(farthest);
-                }
-            }
-        };
-        add(&mut self.all);
-        if in_shadow {
-            Place::InShadow
-        } else {
-            add(&mut self.lit);
-            Place::Lit
+        let mut seen = self.projector.footprint(bounds)?;
+        if !seen.meets_map() {
+            return None;
         }
+        if self.projector.near.is_some() {
+            seen.farthest = seen.farthest.min(reach);
+        }
+        add(&mut self.all, &seen);
+        Some(seen)
+    }
+
+    /// Light may fall on a receiver: no occluder hides it.
+    pub(crate) fn light(&mut self, receiver: &Footprint) {
+        add(&mut self.lit, receiver);
     }
 
     /// Whether a caster's shadow may be seen. `occludes`: whether it is an occluder of this map, by
@@ -211,6 +190,15 @@ impl Mask {
                 .iter()
                 .any(|&receiver| receiver >= cast.nearest - slack)
         })
+    }
+}
+
+/// Adds a receiver to the farthest ones in each part.
+fn add(parts: &mut [f64], receiver: &Footprint) {
+    for row in receiver.rows() {
+        for part in &mut parts[row] {
+            *part = part.max(receiver.farthest);
+        }
     }
 }
 
@@ -233,6 +221,13 @@ mod tests {
         Projector::new((clip * view).as_dmat4())
     }
 
+    /// Adds a receiver on which light may fall; returns whether the map sees it.
+    fn receive_lit(mask: &mut Mask, bounds: &Aabb, reach: f64) -> bool {
+        let seen = mask.receive(bounds, reach);
+        seen.iter().for_each(|seen| mask.light(seen));
+        seen.is_some()
+    }
+
     fn around(at: Vec3, half: f32) -> Aabb {
         Aabb::new(at - half, at + half)
     }
@@ -242,7 +237,7 @@ mod tests {
         let at = |x: f32, z: f32| around(Vec3::new(1.0 + x, 2.0, 3.0 - z), 0.2);
         let mut mask = Mask::new(face());
         assert!(!mask.shows(&at(0.0, 2.0), true), "nothing is seen");
-        assert_eq!(mask.receive(&at(0.0, 4.0), 10.0, false), Place::Lit);
+        assert!(receive_lit(&mut mask, &at(0.0, 4.0), 10.0));
         assert!(mask.shows(&at(0.0, 2.0), false));
         assert!(mask.shows(&at(0.0, 4.0), false), "itself");
         assert!(!mask.shows(&at(0.0, 6.0), false), "behind");
@@ -252,14 +247,14 @@ mod tests {
             "around the light"
         );
         let behind_the_light = at(0.0, -4.0);
-        assert_eq!(mask.receive(&behind_the_light, 10.0, false), Place::Beside);
+        assert!(!receive_lit(&mut mask, &behind_the_light, 10.0));
     }
 
     #[test]
     fn of_receivers_in_shadow_occluders_alone_count() {
         let at = |z: f32| around(Vec3::new(1.0, 2.0, 3.0 - z), 0.2);
         let mut mask = Mask::new(face());
-        assert_eq!(mask.receive(&at(4.0), 10.0, true), Place::InShadow);
+        assert!(mask.receive(&at(4.0), 10.0).is_some());
         assert!(mask.shows(&at(2.0), true));
         assert!(!mask.shows(&at(2.0), false));
     }
@@ -268,7 +263,7 @@ mod tests {
     fn the_sun_has_masks_too() {
         let mut mask = Mask::new(sun());
         let receiver = around(Vec3::new(2.0, 0.0, 1.0), 0.5);
-        assert_eq!(mask.receive(&receiver, 0.0, false), Place::Lit);
+        assert!(receive_lit(&mut mask, &receiver, 0.0));
         let shows = |x: f32, y: f32| mask.shows(&around(Vec3::new(x, y, 1.0), 0.1), false);
         assert!(shows(2.0, 3.0));
         assert!(shows(2.0, 30.0), "before the near plane");
@@ -302,7 +297,7 @@ mod tests {
                 let casts = map.footprint(&Aabb::new(before, before)).is_some();
                 if inside && casts {
                     let mut mask = Mask::new(map);
-                    assert_eq!(mask.receive(&receiver, 1e3, false), Place::Lit);
+                    assert!(receive_lit(&mut mask, &receiver, 1e3));
                     assert!(mask.shows(&caster, false), "{receiver:?} {seen} {caster:?}");
                     shown += 1;
                 }

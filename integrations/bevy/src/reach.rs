@@ -3,7 +3,7 @@
 //! Mirrors `shadows.wgsl` and `shadow_sampling.wgsl` of Bevy 0.19: a place is moved by both biases, and
 //! the map is read beside it.
 
-use crate::mask::{Mask, Place};
+use crate::mask::{Footprint, Mask, Projector};
 use crate::receivers::Receiver;
 use bevy_light::{DirectionalLight, PointLight, SpotLight};
 use bevy_math::Vec3;
@@ -127,21 +127,61 @@ pub(crate) struct SeenByLight {
 }
 
 impl SeenByLight {
-    /// Adds all of it to a mask; returns whether some of it may be lit. `look` finds what occluders
-    /// hide from the light.
-    pub(crate) fn receive(
-        &self,
-        mask: &mut Mask,
-        look: impl FnOnce(&[Aabb], &mut [Visibility]),
-    ) -> bool {
+    /// What a shadow map has to do with it.
+    pub(crate) fn on_map(&self, projector: Projector) -> SeenOnMap {
+        let mut mask = Mask::new(projector);
+        let (mut boxes, mut footprints) = (Vec::new(), Vec::new());
+        for (bounds, &reach) in self.boxes.iter().zip(&self.reaches) {
+            if let Some(footprint) = mask.receive(bounds, reach) {
+                boxes.push(*bounds);
+                footprints.push(footprint);
+            }
+        }
+        SeenOnMap {
+            mask,
+            boxes,
+            footprints,
+        }
+    }
+}
+
+/// What cameras see within a light's reach and within a shadow map.
+#[derive(Debug)]
+pub(crate) struct SeenOnMap {
+    mask: Mask,
+    boxes: Vec<Aabb>,
+    footprints: Vec<Footprint>,
+}
+
+impl SeenOnMap {
+    pub(crate) fn is_nothing(&self) -> bool {
+        self.boxes.is_empty()
+    }
+
+    /// Whether a caster's shadow may fall on some of it, were all of it lit.
+    pub(crate) fn may_show(&self, bounds: &Aabb) -> bool {
+        !self.is_nothing() && self.mask.shows(bounds, true)
+    }
+
+    /// Finds what may be lit; returns whether something is. `look` finds what occluders hide from the
+    /// light.
+    pub(crate) fn light(&mut self, look: impl FnOnce(&[Aabb], &mut [Visibility])) -> bool {
         let mut results = vec![Visibility::Visible; self.boxes.len()];
         look(&self.boxes, &mut results);
         let mut lit = false;
-        for ((bounds, &reach), result) in self.boxes.iter().zip(&self.reaches).zip(results) {
-            let in_shadow = result == Visibility::Occluded;
-            lit |= mask.receive(bounds, reach, in_shadow) == Place::Lit;
+        for (footprint, result) in self.footprints.iter().zip(results) {
+            if result != Visibility::Occluded {
+                self.mask.light(footprint);
+                lit = true;
+            }
         }
         lit
+    }
+
+    /// Whether a caster's shadow may be seen, after [`Self::light`]. `occludes`: whether it is an
+    /// occluder of this map, by which receivers may be hidden.
+    pub(crate) fn shows(&self, bounds: &Aabb, occludes: bool) -> bool {
+        self.mask.shows(bounds, occludes)
     }
 }
 

@@ -24,9 +24,9 @@ pub struct CpuOcclusionStats {
     pub light_views: usize,
     /// Shadow casters in the frusta of these, as Bevy found them.
     pub casters: usize,
-    /// Of these, hidden from the light.
+    /// Of these, left out because occluders hide them from the light.
     pub casters_hidden: usize,
-    /// Of these, neither hidden nor with a shadow that a camera sees.
+    /// Of these, left out because their shadow falls on nothing that a camera sees.
     pub casters_unseen: usize,
     /// Point and spot lights that are not drawn, because nothing that they light is seen.
     pub lights_unseen: usize,
@@ -54,10 +54,10 @@ impl CpuOcclusionPlugin {
         DiagnosticPath::const_new("cpu_occlusion/meshes_hidden");
     /// Shadow casters in the frusta of culled lights.
     pub const CASTERS: DiagnosticPath = DiagnosticPath::const_new("cpu_occlusion/casters");
-    /// Of these, hidden from the light.
+    /// Of these, left out because occluders hide them from the light.
     pub const CASTERS_HIDDEN: DiagnosticPath =
         DiagnosticPath::const_new("cpu_occlusion/casters_hidden");
-    /// Of these, neither hidden nor with a shadow that a camera sees.
+    /// Of these, left out because their shadow falls on nothing that a camera sees.
     pub const CASTERS_UNSEEN: DiagnosticPath =
         DiagnosticPath::const_new("cpu_occlusion/casters_unseen");
     /// Time of all of it together.

@@ -107,6 +107,34 @@ fn casters_behind_casters_leave_the_faces_of_a_point_light() {
 }
 
 #[test]
+fn a_face_of_few_casters_is_tested_only_where_no_other_tells_that_light_falls() {
+    let mut t = TestWorld::new();
+    t.wall(Occluder::default());
+    let wall = t.wall(Occluder::default());
+    t.get_mut::<Transform>(wall).translation.z *= -1.0;
+    let hidden = [-9.0, 9.0].map(|z| t.ball(z));
+    let light = t.app.world_mut().spawn((point_light(), CULL)).id();
+    t.update();
+    assert_eq!(hidden.map(|ball| faces(&t, light, ball).len()), [0, 0]);
+
+    // With the wall five casters are before the light, and two behind it.
+    let others = [(); 3].map(|()| t.ball(-3.0));
+    t.update();
+    assert_eq!(faces(&t, light, hidden[0]), NOWHERE);
+    assert_eq!(faces(&t, light, hidden[1]), [BACKWARD], "drawn untested");
+    for ball in others {
+        assert_eq!(faces(&t, light, ball), [FORWARD]);
+        t.app.world_mut().entity_mut(ball).despawn();
+    }
+    for _ in 0..3 {
+        t.ball(3.0);
+    }
+    t.update();
+    assert_eq!(faces(&t, light, hidden[0]), [FORWARD], "drawn untested");
+    assert_eq!(faces(&t, light, hidden[1]), NOWHERE);
+}
+
+#[test]
 fn boxes_hide_nothing_from_lights_whose_near_plane_may_cut_the_mesh_around_them() {
     let mut t = TestWorld::new();
     let half = Vec3::new(3.9, 3.9, 1.0);
