@@ -1,6 +1,6 @@
 //! What the pipelines of the forward pass differ in.
 
-use crate::geometry::{PipelineKey, PipelineRecipe, Pipelines, Shape, VertexSource};
+use crate::geometry::{Motion, PipelineKey, PipelineRecipe, Pipelines, Shape, VertexSource};
 use crate::gpu::{Gpu, bind_group_layout};
 use crate::lights::SceneLights;
 use crate::scene::{LobeClass, lobes_layout};
@@ -95,6 +95,7 @@ impl Recipes {
     ) -> Self {
         let mut constants = lighting_constants(settings);
         constants.extend(submission.constants());
+        constants.push(Motion::Omitted.constant());
         let layered = submission == Submission::Multiview;
         constants.push(("LAYERED", f64::from(u8::from(layered))));
         let sampled = settings.antialiasing.mode != Antialiasing::None;

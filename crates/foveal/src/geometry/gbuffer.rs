@@ -1,10 +1,10 @@
 //! The G-buffer and the pass that fills it.
 
-use super::FaceNormals;
 use super::{
     DrawList, Draws, PipelineKey, PipelineRecipe, Pipelines, Rates, ResolveAt, VertexSource,
     VisibilityPass,
 };
+use super::{FaceNormals, Motion};
 
 use super::{GBuffer, Window};
 use crate::formats::{IDENTITY_FORMAT, SURFACE_FORMAT};
@@ -54,7 +54,10 @@ impl GeometryPass {
                     gpu,
                     frame_layout,
                     (MaterialDispatch::of(gpu, settings), material_layout),
-                    FaceNormals::wanted_by(settings),
+                    (
+                        FaceNormals::wanted_by(settings),
+                        Motion::wanted_by(settings),
+                    ),
                     (windows, crate::antialias::adds_lobes(settings)),
                     (further, Rates::wanted_by(settings)),
                     (submission, EyeLayout::of(settings)),
@@ -84,6 +87,12 @@ impl GeometryPass {
     ) -> Pipelines {
         let face_normals = FaceNormals::wanted_by(settings) == FaceNormals::Written;
         let mut constants = submission.constants().to_vec();
+        let motion = if gpu.is_reduced() {
+            Motion::Omitted
+        } else {
+            Motion::wanted_by(settings)
+        };
+        constants.push(motion.constant());
         if !gpu.is_reduced() {
             constants.push(("FACE_NORMAL", f64::from(u8::from(face_normals))));
             let black = crate::antialias::adds_lobes(settings);

@@ -3,6 +3,7 @@
 mod draw_list;
 mod face_normals;
 mod gbuffer;
+mod motion;
 mod pipelines;
 #[cfg(test)]
 mod procedural;
@@ -18,6 +19,7 @@ pub(crate) use crate::scene::geometry_layout;
 pub(crate) use draw_list::{Batch, DrawList, Draws};
 pub(crate) use face_normals::FaceNormals;
 pub(crate) use gbuffer::GeometryPass;
+pub(crate) use motion::Motion;
 pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines, Shape, VertexSource};
 pub(crate) use target::GBuffer;
 pub(crate) use visibility::{Rates, ResolveAt, VisibilityPass, VisibilityTargets};

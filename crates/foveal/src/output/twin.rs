@@ -123,7 +123,7 @@ fn motion_is_the_distance_in_pixels_that_a_point_moved() {
     let mut before = camera.clone();
     before.world_from_view.w_axis.x += 0.05;
     before.world_from_view.w_axis.y -= 0.02;
-    let settings = small(61, 40);
+    let settings = small(61, 40).with(|s| s.picture.view = DebugView::Motion);
     let size = Vec2::new(61.0, 40.0);
     let mut renderer = rendered(&scene, camera, &settings);
     pollster::block_on(renderer.render(&Frame::new(camera).with_previous(&before))).expect("drawn");

@@ -8,7 +8,8 @@ use pollster::block_on;
 
 use crate::testing::{Film, gpu, gpu_with, picture, rendered_on, small, texels};
 use crate::{
-    Antialiasing, Culling, Geometry, MaterialDispatch, RateSource, Settings, Shading, Shadows,
+    Antialiasing, Culling, DebugView, Geometry, MaterialDispatch, RateSource, Settings, Shading,
+    Shadows,
 };
 
 /// Frames after which a picture at rest no longer changes.
@@ -371,7 +372,10 @@ fn a_frame_without_a_new_shape_shows_no_motion() {
     scene.meshes[mesh].deforms = true;
     let camera = scene.cameras[0].clone();
     for path in [Geometry::Gbuffer, Geometry::Visibility] {
-        let settings = small(96, 64).with(|s| s.geometry.path = path);
+        let settings = small(96, 64).with(|s| {
+            s.geometry.path = path;
+            s.picture.view = DebugView::Motion;
+        });
         let mut film = Film::new(&scene, &settings);
         let mut bent = scene.clone();
         for vertex in &mut bent.meshes[mesh].vertices {

@@ -43,6 +43,10 @@ override EYES: u32 = 0u;
 // An eye's fragments beyond the centre of the target are discarded, not clipped.
 override DISCARD_BEYOND: bool = false;
 
+// Motion is found. Where it is not, nothing of it is computed or interpolated. Rust:
+// `geometry/motion.rs`.
+override MOTION: bool = true;
+
 // Highest bit of an instance's number on its way to the fragments: it is seen by the right eye.
 const RIGHT_EYE: u32 = 0x80000000u;
 
@@ -111,8 +115,11 @@ fn rests_in_world(i: Instance, position: vec3f, previous_position: vec3f) -> boo
 }
 
 // x, y, w of an eye's own clip space in the frame before, `now` where nothing has moved; and by how
-// many metres the place has moved in the world.
+// many metres the place has moved in the world. Zero without `MOTION`.
 fn clip_before(i: Instance, view: u32, now: vec3f, position: vec3f, previous_position: vec3f) -> vec4f {
+    if !MOTION {
+        return vec4f(0.0);
+    }
     let previous = previous_instance_position(i, previous_position);
     let before = frame.views[view].previous_clip_from_world * vec4f(previous, 1.0);
     let rests = rests_in_world(i, position, previous_position);
@@ -197,11 +204,15 @@ const MOVED: f32 = 0.015625;
 
 // `shared/identity.wgsl`.
 fn identity_of(marked_instance: u32, now: vec3f, before: vec4f) -> vec2u {
+    let number = (marked_instance & ~RIGHT_EYE) + 1u;
+    if !MOTION {
+        return vec2u(number, 0u);
+    }
     let view = select(0u, 1u, (marked_instance & RIGHT_EYE) != 0u);
     let pixel_width = 2.0 * abs(frame.views[view].view_from_ndc.x * now.z) / frame.size.x;
     let motion = pack2x16float(motion_in_pixels(now, before.xyz)) & ~HAS_MOVED;
     let moved = select(0u, HAS_MOVED, before.w > MOVED * pixel_width);
-    return vec2u((marked_instance & ~RIGHT_EYE) + 1u, motion | moved);
+    return vec2u(number, motion | moved);
 }
 
 fn unit_or(v: vec3f, otherwise: vec3f) -> vec3f {

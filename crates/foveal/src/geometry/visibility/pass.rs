@@ -4,7 +4,7 @@ use super::bins::{BinPass, Bins};
 use super::raster::VisiblePass;
 use super::resolve::ResolvePass;
 use super::targets::{Listed, Rates, ResolveAt};
-use crate::geometry::{DrawList, Draws, FaceNormals, GBuffer, Window};
+use crate::geometry::{DrawList, Draws, FaceNormals, GBuffer, Motion, Window};
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;
 use crate::scene::{MaterialDispatch, SceneOnGpu, family_layout};
@@ -40,13 +40,18 @@ impl VisibilityPass {
         gpu: &Gpu,
         frame_layout: &wgpu::BindGroupLayout,
         (by, material_layout): (MaterialDispatch, &wgpu::BindGroupLayout),
-        face_normals: FaceNormals,
+        (face_normals, motion): (FaceNormals, Motion),
         (windows, black): (u32, bool),
         (further, rates): (Option<f64>, Option<Rates>),
         eyes: (Submission, EyeLayout),
     ) -> Self {
         let geometry_layout = crate::scene::geometry_layout(gpu);
-        let raster = VisiblePass::new(gpu, frame_layout, material_layout, &geometry_layout, eyes);
+        let raster = VisiblePass::new(
+            gpu,
+            [frame_layout, material_layout, &geometry_layout],
+            eyes,
+            motion,
+        );
         let family_layout = family_layout(gpu);
         let layout = match by {
             MaterialDispatch::Family => &family_layout,

@@ -3,7 +3,7 @@
 use super::VisibilityTargets;
 use crate::formats::TRIANGLE_FORMAT;
 use crate::geometry::{
-    DrawList, Draws, GBuffer, IDENTITY_FORMAT, PipelineKey, PipelineRecipe, Pipelines,
+    DrawList, Draws, GBuffer, IDENTITY_FORMAT, Motion, PipelineKey, PipelineRecipe, Pipelines,
     VertexSource, Window,
 };
 
@@ -24,13 +24,11 @@ pub(super) struct VisiblePass {
 impl VisiblePass {
     pub(super) fn new(
         gpu: &Gpu,
-        frame_layout: &wgpu::BindGroupLayout,
-        material_layout: &wgpu::BindGroupLayout,
-        geometry_layout: &wgpu::BindGroupLayout,
+        layouts: [&wgpu::BindGroupLayout; 3],
         eyes: (Submission, EyeLayout),
+        motion: Motion,
     ) -> Self {
         let numbered = gpu.numbers_triangles();
-        let layouts = [frame_layout, material_layout, geometry_layout];
         let layered = eyes.0 == Submission::Multiview;
         let (shader, vertex) = match (numbered, layered) {
             (true, false) => (shader::GEOMETRY_VISIBILITY_INDEXED, "vertex_indexed"),
@@ -51,6 +49,8 @@ impl VisiblePass {
             let vertex = VertexSource::Shader(vertex);
             (&layouts[..], vertex, "visible_pulled")
         };
+        let mut constants = eyes.0.constants().to_vec();
+        constants.push(motion.constant());
         let pipelines = Pipelines::new(PipelineRecipe {
             label: "visibility",
             module: shader::module(gpu, "visibility", shader),
@@ -60,7 +60,7 @@ impl VisiblePass {
             targets: vec![Some(IDENTITY_FORMAT.into()), Some(TRIANGLE_FORMAT.into())],
             writes_depth: true,
             depth_compare: wgpu::CompareFunction::Greater,
-            constants: eyes.0.constants().to_vec(),
+            constants,
             has_mask: true,
             multiview_mask: eyes.0.multiview_mask(),
         });

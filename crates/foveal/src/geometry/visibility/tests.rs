@@ -14,7 +14,9 @@ use crate::shading::twin::unpack_surface;
 use crate::testing::{
     gpu, gpu_with, gpu_with_buffers, picture, rendered, rendered_on, small, texels,
 };
-use crate::{Antialiasing, EdgeTest, Frame, Geometry, Gpu, SamplePattern, Settings, Stereo};
+use crate::{
+    Antialiasing, DebugView, EdgeTest, Frame, Geometry, Gpu, SamplePattern, Settings, Stereo,
+};
 
 fn by_triangles(settings: &Settings) -> Settings {
     settings
@@ -248,7 +250,10 @@ fn motion_is_the_rasterizers() {
     let mut before = camera.clone();
     before.world_from_view.w_axis.x += 0.05;
     let motions = [Geometry::Gbuffer, Geometry::Visibility].map(|geometry| {
-        let settings = small(61, 40).with(|s| s.geometry.path = geometry);
+        let settings = small(61, 40).with(|s| {
+            s.geometry.path = geometry;
+            s.picture.view = DebugView::Motion;
+        });
         let mut renderer = rendered(&scene, camera, &settings);
         let frame = Frame::new(camera).with_previous(&before);
         pollster::block_on(renderer.render(&frame)).unwrap();
