@@ -68,8 +68,10 @@ settings! {
     /// The way to the G-buffer.
     "Geometry" geometry: GeometrySettings {
         /// Way to fill the G-buffer: gbuffer evaluates materials as it rasterizes; visibility
-        /// rasterizes triangle numbers and resolves materials once per pixel. The picture is
-        /// the same but for rounding. Use visibility to resolve materials at a shading rate.
+        /// rasterizes triangle numbers and resolves materials once per pixel. Pictures are the
+        /// same but for rounding, and for textures seen small, whose filters are told derivatives
+        /// of the pixel itself instead of two by two. Use visibility to resolve materials at a
+        /// shading rate.
         geometry => path: Geometry = Geometry::default(), "Path", Kind::choice::<Geometry>();
         /// Materials of a visibility buffer that one dispatch resolves: material takes one,
         /// family all that share shader, texture arrays and samplers. auto takes material on
