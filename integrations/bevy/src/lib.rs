@@ -81,8 +81,8 @@
 //! slits narrower than a pixel may lose what is behind them. So may they with a temporal jitter
 //! (`TemporalAntiAliasing`) or an upscaler, whose samples are not those of the viewport.
 //!
-//! A view whose transform or projection mirrors without `Camera::invert_culling` is not culled;
-//! [`CpuOcclusionStats::refused_views`] counts them. Where the near plane is oblique (a mirror's clip
+//! A view whose transform or projection mirrors without `Camera::invert_culling` is not culled by
+//! occluders; [`CpuOcclusionStats::refused_views`] counts them. Where the near plane is oblique (a mirror's clip
 //! plane), occluders that reach before it are left out.
 //!
 //! # Shadows that nobody sees

@@ -140,6 +140,8 @@ pub(crate) struct Mask {
     lit: Box<[f64]>,
     /// The same with receivers that occluders hide from the light.
     all: Box<[f64]>,
+    /// Nothing was added.
+    is_empty: bool,
 }
 
 impl Mask {
@@ -150,6 +152,7 @@ impl Mask {
             projector,
             lit: nothing(),
             all: nothing(),
+            is_empty: true,
         }
     }
 
@@ -169,6 +172,7 @@ impl Mask {
             seen.farthest = seen.farthest.min(reach);
         }
         add(&mut self.all, &seen);
+        self.is_empty = false;
         Some(seen)
     }
 
@@ -180,6 +184,13 @@ impl Mask {
     /// Whether a caster's shadow may be seen. `occludes`: whether it is an occluder of this map, by
     /// which receivers may be hidden.
     pub(crate) fn shows(&self, bounds: &Aabb, occludes: bool) -> bool {
+        // It may be anywhere.
+        if !bounds.is_valid() {
+            return true;
+        }
+        if self.is_empty {
+            return false;
+        }
         let Some(cast) = self.projector.footprint(bounds) else {
             return true;
         };
@@ -257,6 +268,16 @@ mod tests {
         assert!(mask.receive(&at(4.0), 10.0).is_some());
         assert!(mask.shows(&at(2.0), true));
         assert!(!mask.shows(&at(2.0), false));
+    }
+
+    #[test]
+    fn casters_that_may_be_anywhere_are_shown() {
+        for map in [face(), sun()] {
+            let mask = Mask::new(map);
+            for half in [f32::INFINITY, f32::NAN] {
+                assert!(mask.shows(&around(Vec3::ZERO, half), true), "{half}");
+            }
+        }
     }
 
     #[test]

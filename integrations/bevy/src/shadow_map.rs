@@ -13,7 +13,7 @@ use bevy_math::{DMat4, DVec3};
 use bevy_platform::collections::HashMap;
 use foveal_cull::{Aabb, SingleThread};
 
-/// So many casters are drawn sooner than tested.
+/// So many casters, of those that may leave a list, are drawn sooner than tested.
 const FEW: usize = 4;
 
 /// Cullers by the size of their buffers.
@@ -112,7 +112,8 @@ impl Faces<'_, '_, '_> {
         work.extend(few);
         let (many, few) = work.split_at_mut(tells);
         for_each(many.iter_mut(), |work| self.test(work, true));
-        // A test of few casters pays only where it may tell that the light lights nothing.
+        // A test of few casters pays only where it may tell that the light lights nothing, or where no
+        // face has more.
         let lit = many.iter().any(|work| work.face.lights_seen);
         for_each(few.iter_mut(), |work| self.test(work, !lit));
     }

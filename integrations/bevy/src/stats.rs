@@ -30,7 +30,8 @@ pub struct CpuOcclusionStats {
     pub casters_unseen: usize,
     /// Point and spot lights that are not drawn, because nothing that they light is seen.
     pub lights_unseen: usize,
-    /// Views that cannot be culled for, and kept everything.
+    /// Views that occluders cannot be drawn for: they kept everything but casters whose shadow falls on
+    /// nothing that a camera sees.
     pub refused_views: usize,
     /// Views that kept everything because Bevy is compiling pipelines: not all is drawn that will be.
     pub waiting_views: usize,

@@ -149,6 +149,13 @@ fn lights_whose_light_ends_at_occluders_are_not_drawn_and_those_beyond_are() {
     *t.get_mut::<Transform>(light) = Transform::from_xyz(0.0, 0.0, -40.0);
     t.update();
     assert!(!t.is_drawn(light));
+    // Nor where some faces have more casters than others.
+    let many = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|x| t.spawn_ball(Vec3::new(x, 0.0, -37.0), ()));
+    t.update();
+    assert!(!t.is_drawn(light));
+    for ball in many {
+        t.app.world_mut().despawn(ball);
+    }
     // Without shadows it would be lit.
     t.app.world_mut().entity_mut(seen).insert(NotShadowReceiver);
     t.get_mut::<PointLight>(light).range = 60.0;

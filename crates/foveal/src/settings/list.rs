@@ -68,9 +68,9 @@ settings! {
     /// The way to the G-buffer.
     "Geometry" geometry: GeometrySettings {
         /// Way to fill the G-buffer: gbuffer evaluates materials as it rasterizes; visibility
-        /// rasterizes triangle numbers and resolves materials once per pixel. Pictures are the
-        /// same but for rounding, and for textures seen small, whose filters are told derivatives
-        /// of the pixel itself instead of two by two. Use visibility to resolve materials at a
+        /// rasterizes triangle numbers and resolves materials once per pixel. The picture is
+        /// the same but for rounding and for minified textures, whose filters get each pixel's own
+        /// derivatives instead of those of 2 x 2 pixels. Use visibility to resolve materials at a
         /// shading rate.
         geometry => path: Geometry = Geometry::default(), "Path", Kind::choice::<Geometry>();
         /// Materials of a visibility buffer that one dispatch resolves: material takes one,

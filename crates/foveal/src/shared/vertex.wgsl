@@ -43,8 +43,7 @@ override EYES: u32 = 0u;
 // An eye's fragments beyond the centre of the target are discarded, not clipped.
 override DISCARD_BEYOND: bool = false;
 
-// Motion is found. Where it is not, nothing of it is computed or interpolated. Rust:
-// `geometry/motion.rs`.
+// Motion is found. Where it is not, nothing of it is computed. Rust: `geometry/motion.rs`.
 override MOTION: bool = true;
 
 // Highest bit of an instance's number on its way to the fragments: it is seen by the right eye.

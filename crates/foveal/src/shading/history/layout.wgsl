@@ -79,13 +79,16 @@ fn list_index(group: vec3u, local: u32, across: u32) -> u32 {
     return (group.y * across + group.x) * 64u + local;
 }
 
-// The lists: samples; pixels that have no history; of these the ones that no sample speaks for;
-// pixels that ask for a sample.
+// The lists: samples of blocks, whose levels are those of single pixels too; pixels that have no
+// history; of these the ones that no sample speaks for; pixels that ask for a sample; pixels that are
+// shaded by themselves, which lie in one array with the first list: from its beginning on, the others
+// from its end back.
 const SAMPLES: u32 = 0u;
 const BARE: u32 = 1u;
 const UNLIT: u32 = 2u;
 const CHOSEN: u32 = 3u;
-const LISTS: u32 = 4u;
+const SINGLE: u32 = 4u;
+const LISTS: u32 = 5u;
 
 // A choice: below this the level of the block whose sample a pixel waits for; else it is shaded by
 // itself, and the rest says what the luminance that is expected there is known from.

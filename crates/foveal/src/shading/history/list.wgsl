@@ -46,7 +46,8 @@ fn list_samples(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
         let shown = min(luminance(textureLoad(radiance, texel, 0).rgb), 65504.0);
         let expected = select(vec2f(0.0, EXPECTED_NOTHING), vec2f(shown, known_from), choice > CHOSEN_ITSELF);
         atomicAdd(&listed[SAMPLES].of_level[level], 1u);
-        samples_listed[atomicAdd(&listed[SAMPLES].count, 1u)] = vec2u(
+        let index = atomicAdd(&listed[select(SAMPLES, SINGLE, is_shaded)].count, 1u);
+        samples_listed[select(arrayLength(&samples_listed) - 1u - index, index, is_shaded)] = vec2u(
             sample_entry(select(sample, texel, is_shaded), level),
             pack2x16float(expected),
         );

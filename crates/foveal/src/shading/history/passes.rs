@@ -90,7 +90,8 @@ pub(super) struct HistoryPasses {
     reproject: Pass<EveryPixel>,
     list: Pass,
     size: Pass,
-    shade: Pass,
+    /// Of blocks, and of single pixels.
+    shade: [Pass; 2],
     gather: Pass,
     scatter: Pass,
     rest: Pass,
@@ -140,6 +141,18 @@ impl HistoryPasses {
         // more than they show.
         let mut of_samples = lighting_constants(settings);
         of_samples.push(("BOTH_RIMS", 0.0));
+        let shade = [false, true].map(|single| {
+            let mut constants = of_samples.clone();
+            constants.push(("SINGLE_PIXELS", f64::from(u8::from(single))));
+            pass(
+                "shading of samples",
+                shader::SHADING_HISTORY_SHADE.variant(&["LIGHT"]),
+                "shade_samples",
+                Some(input),
+                &[read, read, light, radiance, write],
+                &constants,
+            )
+        });
         Self {
             keep: pass(
                 "kept tiles",
@@ -174,14 +187,7 @@ impl HistoryPasses {
                 &[write, write],
                 &[],
             ),
-            shade: pass(
-                "shading of samples",
-                shader::SHADING_HISTORY_SHADE.variant(&["LIGHT"]),
-                "shade_samples",
-                Some(input),
-                &[read, read, light, radiance, write],
-                &of_samples,
-            ),
+            shade,
             gather: pass(
                 "gathering light",
                 shader::SHADING_HISTORY_GATHER,
@@ -411,6 +417,7 @@ impl HistoryPasses {
             .clear_buffer(&frame.history.measured, 0, None);
         let mut pass = recorder.compute_pass("shading");
         self.size_lists(&mut pass, frame);
+        self.shade(&mut pass, frame, List::Single);
         self.shade(&mut pass, frame, List::Samples);
     }
 
@@ -462,8 +469,13 @@ impl HistoryPasses {
     /// Shades the pixels of a list.
     fn shade(&self, pass: &mut wgpu::ComputePass<'_>, frame: &Frame<'_>, list: List) {
         let h = frame.history;
+        let [blocks, single] = &self.shade;
+        let by = match list {
+            List::Samples => blocks,
+            _ => single,
+        };
         let shade = frame.group(
-            &self.shade,
+            by,
             "shading of samples",
             &[
                 h.dispatch(list),
@@ -473,7 +485,7 @@ impl HistoryPasses {
                 h.measured.as_entire_binding(),
             ],
         );
-        pass.set_pipeline(&self.shade.pipeline);
+        pass.set_pipeline(&by.pipeline);
         pass.set_bind_group(1, frame.input, &[]);
         pass.set_bind_group(2, &shade, &[]);
         pass.dispatch_workgroups_indirect(&h.dispatches, list.offset());

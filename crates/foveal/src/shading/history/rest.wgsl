@@ -23,6 +23,6 @@ fn list_turn(@builtin(global_invocation_id) id: vec3u) {
     }
     if (order_of(texel) >> 16u) * ROUND / 65536u == parameters.phase {
         atomicAdd(&listed[SAMPLES].of_level[0], 1u);
-        samples_listed[atomicAdd(&listed[SAMPLES].count, 1u)] = vec2u(sample_entry(texel, 0u), pack2x16float(vec2f(0.0, EXPECTED_NOTHING)));
+        samples_listed[atomicAdd(&listed[SINGLE].count, 1u)] = vec2u(sample_entry(texel, 0u), pack2x16float(vec2f(0.0, EXPECTED_NOTHING)));
     }
 }

@@ -1,5 +1,5 @@
-// Shades the samples of a list, and measures by how much they differ from what was expected. LIGHT asks
-// for shadows within blocks.
+// Shades the samples of blocks, or with `SINGLE_PIXELS` pixels by themselves, and measures by how much
+// these differ from what was expected. LIGHT asks for shadows within blocks.
 
 #variant LIGHT
 #import shading/coarse/block_light.wgsl
@@ -29,12 +29,16 @@ fn shade_samples(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_
     if index >= dispatch.count {
         return;
     }
-    let entry = samples_listed[index];
-    let level = entry.x >> 28u;
+    let from_end = arrayLength(&samples_listed) - 1u - index;
+    let entry = samples_listed[select(from_end, index, SINGLE_PIXELS)];
+    var level = 0u;
+    if !SINGLE_PIXELS {
+        level = entry.x >> 28u;
+    }
     let texel = entry_texel(entry.x);
     let lit = light_block(texel >> vec2u(level), level);
     textureStore(light, texel, lit.light);
-    if level > 0u {
+    if !SINGLE_PIXELS {
         return;
     }
     textureStore(radiance, texel, vec4f(lit.radiance.rgb, 1.0));

@@ -23,10 +23,11 @@ pub(super) enum List {
     Bare = 1,
     Unlit = 2,
     Chosen = 3,
+    Single = 4,
 }
 
 /// Lists of a frame.
-const LISTS: u64 = 4;
+const LISTS: u64 = 5;
 
 impl List {
     /// Where its `Dispatch` begins.
@@ -48,7 +49,7 @@ pub(crate) struct HistoryTargets {
     pub(crate) listed: wgpu::Buffer,
     /// `Dispatch` of each list.
     pub(super) dispatches: wgpu::Buffer,
-    /// Samples to be shaded: first those that are chosen, then those of unlit pixels.
+    /// Samples to be shaded: pixels from the beginning on, blocks from the end back; then unlit pixels.
     pub(super) samples: wgpu::Buffer,
     /// Pixels that ask for a sample.
     pub(super) chosen: wgpu::Buffer,
