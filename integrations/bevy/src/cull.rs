@@ -276,7 +276,7 @@ impl ViewCuller {
 
     /// How many entities of the list may leave it.
     #[cfg(feature = "bevy_light")]
-    pub(crate) fn tested(&self) -> usize {
+    pub(crate) fn removable(&self) -> usize {
         self.boxes.len()
     }
 

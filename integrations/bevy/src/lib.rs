@@ -82,8 +82,8 @@
 //! (`TemporalAntiAliasing`) or an upscaler, whose samples are not those of the viewport.
 //!
 //! A view whose transform or projection mirrors without `Camera::invert_culling` is not culled by
-//! occluders; [`CpuOcclusionStats::refused_views`] counts them. Where the near plane is oblique (a mirror's clip
-//! plane), occluders that reach before it are left out.
+//! occluders; [`CpuOcclusionStats::refused_views`] counts them. Where the near plane is oblique (a
+//! mirror's clip plane), occluders that reach before it are left out.
 //!
 //! # Shadows that nobody sees
 //! Casters whose shadow can fall on nothing that a camera lists are left out of the shadow maps of

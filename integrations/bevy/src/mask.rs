@@ -140,8 +140,6 @@ pub(crate) struct Mask {
     lit: Box<[f64]>,
     /// The same with receivers that occluders hide from the light.
     all: Box<[f64]>,
-    /// Nothing was added.
-    is_empty: bool,
 }
 
 impl Mask {
@@ -152,7 +150,6 @@ impl Mask {
             projector,
             lit: nothing(),
             all: nothing(),
-            is_empty: true,
         }
     }
 
@@ -172,7 +169,6 @@ impl Mask {
             seen.farthest = seen.farthest.min(reach);
         }
         add(&mut self.all, &seen);
-        self.is_empty = false;
         Some(seen)
     }
 
@@ -187,9 +183,6 @@ impl Mask {
         // It may be anywhere.
         if !bounds.is_valid() {
             return true;
-        }
-        if self.is_empty {
-            return false;
         }
         let Some(cast) = self.projector.footprint(bounds) else {
             return true;

@@ -160,7 +160,7 @@ impl SeenOnMap {
 
     /// Whether a caster's shadow may fall on some of it, were all of it lit.
     pub(crate) fn may_show(&self, bounds: &Aabb) -> bool {
-        self.mask.shows(bounds, true)
+        !self.is_nothing() && self.mask.shows(bounds, true)
     }
 
     /// Finds what may be lit; returns whether something is. `look` finds what occluders hide from the

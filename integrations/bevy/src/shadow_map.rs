@@ -104,13 +104,10 @@ impl Faces<'_, '_, '_> {
             })
             .collect();
         for_each(work.iter_mut(), |work| self.leave_out_unseen(work));
-        let (few, many): (Vec<_>, Vec<_>) = work
-            .iter_mut()
-            .partition(|work| work.culler.tested() <= FEW);
-        let tells = many.len();
-        let mut work = many;
-        work.extend(few);
-        let (many, few) = work.split_at_mut(tells);
+        let has_few = |work: &Work<'_, '_>| work.culler.removable() <= FEW;
+        work.sort_by_key(has_few);
+        let first_of_few = work.partition_point(|work| !has_few(work));
+        let (many, few) = work.split_at_mut(first_of_few);
         for_each(many.iter_mut(), |work| self.test(work, true));
         // A test of few casters pays only where it may tell that the light lights nothing, or where no
         // face has more.
@@ -121,8 +118,8 @@ impl Faces<'_, '_, '_> {
     /// Removes casters whose shadow falls on nothing that is seen, whether it is lit or not.
     fn leave_out_unseen(&self, work: &mut Work<'_, '_>) {
         let Work { face, culler, seen } = work;
-        let map = || Projector::new(face.clip_from_world);
-        *seen = self.seen.map(|seen| seen.on_map(map()));
+        let projector = Projector::new(face.clip_from_world);
+        *seen = self.seen.map(|seen| seen.on_map(projector));
         face.outcome.unseen = culler.take(face.list, self.boxes, self.listed, |bounds| {
             seen.as_ref().is_none_or(|seen| seen.may_show(bounds))
         });

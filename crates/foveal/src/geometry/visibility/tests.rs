@@ -261,6 +261,17 @@ fn motion_is_the_rasterizers() {
     });
     assert_eq!(motions[0], motions[1]);
     assert!(motions[0].iter().any(|m| m[1] != 0));
+
+    // Full shading asks for none.
+    for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
+        let settings = small(61, 40).with(|s| s.geometry.path = geometry);
+        let mut renderer = rendered(&scene, camera, &settings);
+        let frame = Frame::new(camera).with_previous(&before);
+        pollster::block_on(renderer.render(&frame)).unwrap();
+        let identity = texels::<[u32; 2]>(&renderer.targets().gbuffer.identity_view);
+        let numbers = |all: &[[u32; 2]]| all.iter().map(|i| [i[0], 0]).collect::<Vec<_>>();
+        assert_eq!(identity, numbers(&motions[0]));
+    }
 }
 
 #[test]

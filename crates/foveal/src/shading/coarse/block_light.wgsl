@@ -14,10 +14,6 @@
 // from half-way directions' turning by half as much as the lights, makes rough stones too bright.
 const SPREAD: f32 = 0.1;
 
-// Blocks are single pixels, of level 0: nothing is filtered over them, which devices that run all
-// branches would pay for.
-override SINGLE_PIXELS: bool = false;
-
 struct LitBlock {
     // As `shade_block` gives it.
     radiance: vec4f,
@@ -108,12 +104,10 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
     let distance = select(view_distance(depth), 1.0, is_behind);
     var s = unpack_surface(gbuffer_words_at(texel), world_position(pixel, distance));
     var roughness = s.roughness;
-    if !SINGLE_PIXELS {
-        if level > 0u {
-            let filtered = filter_over_block(s, block, level, distance);
-            s = filtered.surface;
-            roughness = filtered.roughness;
-        }
+    if level > 0u {
+        let filtered = filter_over_block(s, block, level, distance);
+        s = filtered.surface;
+        roughness = filtered.roughness;
     }
     let v = direction_to_eye(view_at(pixel), s.position);
     let look = environment_look(s, v, is_behind);
@@ -121,10 +115,8 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
         return LitBlock(vec4f(background(look), alpha), vec4u(0u));
     }
     var stands_for = PIXEL;
-    if !SINGLE_PIXELS {
-        if level > 0u {
-            stands_for = block_of(block, level, s);
-        }
+    if level > 0u {
+        stands_for = block_of(block, level, s);
     }
     let lit = light_surface(s, v, look, pixel, distance, stands_for);
     let direction = direction_or(lit.direction, s.normal);

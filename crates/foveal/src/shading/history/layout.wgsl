@@ -79,10 +79,10 @@ fn list_index(group: vec3u, local: u32, across: u32) -> u32 {
     return (group.y * across + group.x) * 64u + local;
 }
 
-// The lists: samples of blocks, whose levels are those of single pixels too; pixels that have no
-// history; of these the ones that no sample speaks for; pixels that ask for a sample; pixels that are
-// shaded by themselves, which lie in one array with the first list: from its beginning on, the others
-// from its end back.
+// The lists: samples of blocks (`of_level` counts single pixels as well); pixels that have no history;
+// of these the ones that no sample speaks for; pixels that ask for a sample; pixels that are shaded by
+// themselves. The first and the last list share an array: single pixels stand from its beginning on,
+// blocks from its end back.
 const SAMPLES: u32 = 0u;
 const BARE: u32 = 1u;
 const UNLIT: u32 = 2u;
