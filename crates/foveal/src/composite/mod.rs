@@ -20,11 +20,16 @@ pub(crate) use patch_targets::{PatchTargets, check_limits};
 #[cfg(test)]
 mod edges_tests;
 #[cfg(test)]
+mod light_tests;
+#[cfg(test)]
 mod light_twin;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod twin;
+
+#[cfg(test)]
+pub(crate) use light_twin::deviation_from_bits;
 
 use light::LightComposite;
 use smooth::SmoothComposite;

@@ -6,6 +6,7 @@ use glam::Vec3;
 use super::contact_tests::{floor, level};
 use super::culling_tests::add;
 use super::tests::shadowed;
+use crate::composite::deviation_from_bits;
 use crate::gpu::read_level;
 use crate::testing::{gpu, picture, rendered};
 use crate::{RateSource, Settings, Shading, Shadows};
@@ -42,7 +43,10 @@ fn deviations(settings: &Settings, scene: &foveal_scene::Scene, camera: &Camera)
     let size = light.blocks(LEVEL);
     let bytes = pollster::block_on(read_level(gpu(), &light.texture, LEVEL, size)).unwrap();
     let words: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(&bytes);
-    words.iter().map(|w| (w[2] >> 28) as f32 / 15.0).collect()
+    words
+        .iter()
+        .map(|w| deviation_from_bits(w[2] >> 28))
+        .collect()
 }
 
 /// A board above a floor, seen from the side: its shadow is some six rows of pixels high.

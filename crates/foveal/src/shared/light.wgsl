@@ -44,17 +44,32 @@ struct Rim {
     counts: vec4f,
 }
 
-// The block of pixels that a sample stands for, by eight pixels at its rim. A pixel has none that count.
+// Four unit normals, and by 1 which of them count.
+struct Normals {
+    x: vec4f,
+    y: vec4f,
+    z: vec4f,
+    counts: vec4f,
+}
+
+// The block of pixels that a sample stands for, by eight pixels at its rim and by normals. Of a pixel
+// none counts.
 struct Block {
+    is_larger: bool,
     first: Rim,
     second: Rim,
+    // Normals of the first four pixels at the rim.
+    at_rim: Normals,
+    // Others that its pixels may have: the sample's own, tilted to four sides.
+    tilted: Normals,
 }
 
 // Whether all eight are looked at, or only the first four.
 override BOTH_RIMS: bool = true;
 
 const NO_RIM: Rim = Rim(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
-const PIXEL: Block = Block(NO_RIM, NO_RIM);
+const NO_NORMALS: Normals = Normals(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
+const PIXEL: Block = Block(false, NO_RIM, NO_RIM, NO_NORMALS, NO_NORMALS);
 
 // What of a light's rays arrives where it is looked at.
 struct Arriving {

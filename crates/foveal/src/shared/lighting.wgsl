@@ -3,6 +3,7 @@
 #import shared/frame.wgsl
 #import shared/light.wgsl
 #import shared/light_list.wgsl
+#import shared/other_normals.wgsl
 #import shared/surface.wgsl
 #import shared/environment.wgsl
 #import shadow/lookup.wgsl
@@ -35,6 +36,8 @@ struct Lit {
     specular_direction: vec3f,
     // Variance of the luminance within the sample's block, by shadows.
     variance: f32,
+    // What the other normals of the block show of the lights.
+    others: OnNormals,
 }
 
 // Of a directional light.
@@ -92,9 +95,44 @@ fn reflect_blinn_phong(s: Surface, mirror: Mirror, v: vec3f, l: vec3f) -> Reflec
     return Reflection(1.0, mirror.at_normal * highlight);
 }
 
+// Luminance that a surface with each of these normals would show of light from one direction. `by`:
+// luminance of what it scatters, and of what it mirrors for each lobe.
+fn shown_on(normals: Normals, s: Surface, by: vec2f, v: vec3f, a: IncidentLight) -> vec4f {
+    let n_dot_l = max(cosines_to(normals, a.direction), vec4f(0.0)) * normals.counts;
+    let lobes = lobes_on(normals, v, a.direction, n_dot_l, squared_alpha(s));
+    return luminance(a.irradiance) * (by.x * n_dot_l + by.y * lobes);
+}
+
+// The same for all normals of a block.
+fn shown_on_others(block: Block, s: Surface, mirror: Mirror, v: vec3f, a: IncidentLight) -> OnNormals {
+    if !block.is_larger {
+        return NOTHING_ON_NORMALS;
+    }
+    let m = 1.0 - saturate(dot(v, normalize(v + a.direction)));
+    let m5 = m * m * m * m * m;
+    let left = 1.0 - (mirror.kept.x + (mirror.kept.y - mirror.kept.x) * m5);
+    var mirrored = mirror.at_normal + (mirror.at_grazing - mirror.at_normal) * m5;
+    if MULTIPLE_SCATTERING {
+        mirrored *= mirror.gain;
+    }
+    let by = vec2f(left * luminance(diffuse_color(s)) / PI, luminance(mirrored));
+    return OnNormals(shown_on(block.at_rim, s, by, v, a), shown_on(block.tilted, s, by, v, a));
+}
+
+fn is_lit(a: IncidentLight, n_dot_l: f32, others: OnNormals) -> bool {
+    let is_faced = n_dot_l > 0.0 || any(others.at_rim + others.tilted > vec4f(0.0));
+    return is_faced && any(a.irradiance > vec3f(0.0));
+}
+
 // Adds what light from one direction makes of a surface's radiance, and its part in the light that
-// falls on it.
-fn add_incident(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, a: IncidentLight, n_dot_l: f32, arriving: Arriving) -> Lit {
+// falls on it and on other normals.
+fn add_incident(before: Lit, s: Surface, mirror: Mirror, v: vec3f, a: IncidentLight, n_dot_l: f32, others: OnNormals, arriving: Arriving) -> Lit {
+    var sum = before;
+    sum.others.at_rim += arriving.part * others.at_rim;
+    sum.others.tilted += arriving.part * others.tilted;
+    if n_dot_l <= 0.0 {
+        return sum;
+    }
     var r: Reflection;
     if BLINN_PHONG {
         r = reflect_blinn_phong(s, mirror, v, a.direction);
@@ -116,6 +154,7 @@ fn add_incident(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, a: IncidentLight
         sum.direction + a.direction * luminance(irradiance),
         sum.specular_direction + a.direction * (luminance(r.specular * irradiance) * n_dot_l),
         sum.variance + variance,
+        sum.others,
     );
 }
 
@@ -124,7 +163,8 @@ fn add_directional(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block: Block,
     let light = light_at(index);
     let a = incident_from_afar(light);
     let n_dot_l = dot(s.normal, a.direction);
-    if n_dot_l <= 0.0 || all(a.irradiance <= vec3f(0.0)) {
+    let others = shown_on_others(block, s, mirror, v, a);
+    if !is_lit(a, n_dot_l, others) {
         return sum;
     }
     var arriving = ALL_ARRIVES;
@@ -134,14 +174,15 @@ fn add_directional(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block: Block,
             return sum;
         }
     }
-    return add_incident(sum, s, mirror, v, a, n_dot_l, arriving);
+    return add_incident(sum, s, mirror, v, a, n_dot_l, others, arriving);
 }
 
 // Adds the part of a light that shines from a point.
 fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block: Block, index: u32, light: Light) -> Lit {
     let a = incident(light, s.position);
     let n_dot_l = dot(s.normal, a.direction);
-    if n_dot_l <= 0.0 || all(a.irradiance <= vec3f(0.0)) {
+    let others = shown_on_others(block, s, mirror, v, a);
+    if !is_lit(a, n_dot_l, others) {
         return sum;
     }
     var arriving = ALL_ARRIVES;
@@ -151,7 +192,7 @@ fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, block: Block, index
             return sum;
         }
     }
-    return add_incident(sum, s, mirror, v, a, n_dot_l, arriving);
+    return add_incident(sum, s, mirror, v, a, n_dot_l, others, arriving);
 }
 
 // Index of the first light word of the cluster at a position in pixels of the target and a distance
@@ -260,7 +301,8 @@ fn light_of(walk: LightWalk) -> Light {
 // the body of a loop once for its last question, too.
 fn light_surface(s: Surface, v: vec3f, look: vec3f, pixel: vec2f, distance: f32, block: Block) -> Lit {
     let seen = environment_seen(pixel, distance);
-    var sum = Lit(s.emissive + ambient(s, v, seen, look), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0);
+    let radiance = s.emissive + ambient(s, v, seen, look);
+    var sum = Lit(radiance, vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, NOTHING_ON_NORMALS);
     var mirror = mirror_of(s);
     if MULTIPLE_SCATTERING {
         mirror.gain = further_bounces(s, v);
@@ -269,12 +311,14 @@ fn light_surface(s: Surface, v: vec3f, look: vec3f, pixel: vec2f, distance: f32,
     for (var i = 0u; i < directional; i++) {
         sum = add_directional(sum, s, mirror, v, block, i);
     }
-    var walk = first_light(pixel, distance, s.position, s.normal);
+    // Other normals of a block may face a light that the sample does not face.
+    let facing = select(s.normal, vec3f(0.0), block.is_larger);
+    var walk = first_light(pixel, distance, s.position, facing);
     loop {
         if walk.bits != 0u {
             sum = add_light(sum, s, mirror, v, block, light_number(walk), light_of(walk));
         }
-        walk = next_light(walk, s.position, s.normal);
+        walk = next_light(walk, s.position, facing);
         continuing {
             break if walk.bits == 0u;
         }

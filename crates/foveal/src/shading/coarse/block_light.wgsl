@@ -7,12 +7,33 @@
 #import shared/frame.wgsl
 #import shared/light.wgsl
 #import shared/lighting.wgsl
+#import shared/other_normals.wgsl
 #import shared/surface.wgsl
 #import shared/environment.wgsl
+#import shadow/lookup.wgsl
 
-// By how much lights in all directions widen a highlight. Found by measurement: 0.5, which follows
-// from half-way directions' turning by half as much as the lights, makes rough stones too bright.
-const SPREAD: f32 = 0.1;
+// The samples are single pixels. Their level is a constant then, so that compilers leave out what blocks
+// need, for which devices that run all branches would pay.
+override SINGLE_PIXELS: bool = false;
+
+fn level_of(level: u32) -> u32 {
+    if SINGLE_PIXELS {
+        return 0u;
+    }
+    return level;
+}
+
+// What a sample's light tells other surfaces of its kind.
+struct ToldLight {
+    // Luminance that a surface scatters that faces `direction`.
+    diffuse: f32,
+    // Luminance that is mirrored, for each `highlight`.
+    specular: f32,
+    direction: vec3f,
+    specular_direction: vec3f,
+    // Of its highlights.
+    a2: f32,
+}
 
 struct LitBlock {
     // As `shade_block` gives it.
@@ -56,42 +77,83 @@ fn filter_over_block(sample_surface: Surface, block: vec2u, level: u32, distance
 // surface.
 const MOST_OFF_PLANE: f32 = 0.3;
 
-// A place at a block's rim, in quarters of its side: what is seen there, from a sample's surface, and
-// in w whether that counts, by 1.
-fn rim_of(block: vec2u, level: u32, quarters: vec2u, s: Surface) -> vec4f {
+// What is seen at a place of a block's rim.
+struct RimPixel {
+    // From a sample's surface, and in w whether it counts, by 1.
+    offset: vec4f,
+    normal: vec3f,
+}
+
+// A place at a block's rim, in quarters of its side.
+fn rim_of(block: vec2u, level: u32, quarters: vec2u, s: Surface) -> RimPixel {
     let first = block << vec2u(level);
     let within = (quarters * ((1u << level) - 1u) + 2u) >> vec2u(2u);
     let texel = min(first + within, picture_of(first).end - 1u);
     let depth = gbuffer_depth_at(texel);
     let offset = world_position(vec2f(texel) + 0.5, view_distance(max(depth, 1e-20))) - s.position;
     let is_same = depth > 0.0 && abs(dot(s.vertex_normal, offset)) <= MOST_OFF_PLANE * length(offset);
-    return select(vec4f(0.0), vec4f(offset, 1.0), is_same);
+    let normal = unit_from_octahedral(unpack2x16snorm(gbuffer_words_at(texel).y));
+    return RimPixel(select(vec4f(0.0), vec4f(offset, 1.0), is_same), normal);
+}
+
+struct FourPixels {
+    rim: Rim,
+    normals: Normals,
 }
 
 // Four places at a block's rim, one on each side: the first at so many quarters of the upper side, the
 // others where quarter turns of the block take it. No two lie in one column or row, nor does the sample in
 // the middle share theirs.
-fn four_of(block: vec2u, level: u32, quarters: u32, s: Surface) -> Rim {
+fn four_of(block: vec2u, level: u32, quarters: u32, s: Surface) -> FourPixels {
     let left = 4u - quarters;
     let a = rim_of(block, level, vec2u(quarters, 0u), s);
     let b = rim_of(block, level, vec2u(4u, quarters), s);
     let c = rim_of(block, level, vec2u(left, 4u), s);
     let d = rim_of(block, level, vec2u(0u, left), s);
-    return Rim(
-        vec4f(a.x, b.x, c.x, d.x),
-        vec4f(a.y, b.y, c.y, d.y),
-        vec4f(a.z, b.z, c.z, d.z),
-        vec4f(a.w, b.w, c.w, d.w),
-    );
+    let across = transpose(mat4x4f(a.offset, b.offset, c.offset, d.offset));
+    let rim = Rim(across[0], across[1], across[2], across[3]);
+    return FourPixels(rim, normals_of(a.normal, b.normal, c.normal, d.normal, rim.counts));
 }
 
-// The rim of a block, by eight places or, without BOTH_RIMS, by four.
-fn block_of(block: vec2u, level: u32, s: Surface) -> Block {
+fn normals_of(a: vec3f, b: vec3f, c: vec3f, d: vec3f, counts: vec4f) -> Normals {
+    let across = transpose(mat4x3f(a, b, c, d));
+    return Normals(across[0], across[1], across[2], counts);
+}
+
+// A normal tilted to four sides; those that the eye cannot see do not count.
+fn tilted_from(normal: vec3f, v: vec3f) -> Normals {
+    let axes = axes_along(normal);
+    let a = normalize(normal + TILT * axes[0]);
+    let b = normalize(normal - TILT * axes[0]);
+    let c = normalize(normal + TILT * axes[1]);
+    let d = normalize(normal - TILT * axes[1]);
+    let facing = vec4f(dot(a, v), dot(b, v), dot(c, v), dot(d, v));
+    return normals_of(a, b, c, d, select(vec4f(0.0), vec4f(1.0), facing > vec4f(0.0)));
+}
+
+// A block of several pixels, by eight places at its rim or, without BOTH_RIMS, by four.
+fn block_of(block: vec2u, level: u32, s: Surface, v: vec3f) -> Block {
+    let first = four_of(block, level, 1u, s);
     var second = NO_RIM;
     if BOTH_RIMS {
-        second = four_of(block, level, 3u, s);
+        second = four_of(block, level, 3u, s).rim;
     }
-    return Block(four_of(block, level, 1u, s), second);
+    // What other normals show is asked of GGX alone.
+    if BLINN_PHONG {
+        return Block(true, first.rim, second, NO_NORMALS, NO_NORMALS);
+    }
+    return Block(true, first.rim, second, first.normals, tilted_from(s.normal, v));
+}
+
+// Part of a squared difference between what a normal shows of the lamps and what it would be told to
+// that counts as variance. Found by measurement.
+const VARIANCE_OF_NORMALS: f32 = 0.2;
+
+// Luminance that surfaces with each of these normals would be told to show, by the light of a sample.
+fn told_on(normals: Normals, told: ToldLight, v: vec3f) -> vec4f {
+    let cosines = max(cosines_to(normals, told.direction), vec4f(LEAST_COSINE));
+    let mirrored = max(cosines_to(normals, told.specular_direction), vec4f(LEAST_COSINE));
+    return told.diffuse * cosines + told.specular * lobes_on(normals, v, told.specular_direction, mirrored, told.a2);
 }
 
 fn light_block(block: vec2u, level: u32) -> LitBlock {
@@ -116,7 +178,7 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
     }
     var stands_for = PIXEL;
     if level > 0u {
-        stands_for = block_of(block, level, s);
+        stands_for = block_of(block, level, s, v);
     }
     let lit = light_surface(s, v, look, pixel, distance, stands_for);
     let direction = direction_or(lit.direction, s.normal);
@@ -124,7 +186,18 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
     let together = saturate(length(lit.specular_direction) / max(luminance(lit.specular), 1e-30));
     let spread = SPREAD * (1.0 - together);
     let lobe = highlight(s.normal, v, specular_direction, squared_alpha(s) + spread);
-    let lamps = luminance(diffuse_color(s) / PI * lit.diffuse + lit.specular);
+    let scattered = diffuse_color(s) / PI * lit.diffuse;
+    let told = ToldLight(
+        luminance(scattered) / max(dot(s.normal, direction), LEAST_COSINE),
+        luminance(lit.specular) / max(lobe, 1e-6),
+        direction,
+        specular_direction,
+        min(squared_alpha(s) + spread, 1.0),
+    );
+    let at_rim = most_apart(stands_for.at_rim, lit.others.at_rim, told_on(stands_for.at_rim, told, v));
+    let tilted = most_apart(stands_for.tilted, lit.others.tilted, told_on(stands_for.tilted, told, v));
+    let variance = lit.variance + VARIANCE_OF_NORMALS * at_rim * at_rim;
+    let whole = luminance(scattered + lit.specular) + DARK / frame.exposure;
     s.roughness = roughness;
     let light = SampleLight(
         lit.diffuse / max(dot(s.normal, direction), LEAST_COSINE),
@@ -133,7 +206,8 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
         specular_direction,
         spread,
         s.normal,
-        sqrt(lit.variance) / (lamps + DARK / frame.exposure),
+        sqrt(variance) / whole,
+        sqrt(VARIANCE_OF_NORMALS) * tilted / whole,
     );
     return LitBlock(vec4f(min(lit.radiance, vec3f(65504.0)), alpha), pack_light(light));
 }

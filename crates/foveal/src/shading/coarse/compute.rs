@@ -1,6 +1,6 @@
 //! The compute backend: an indirect dispatch per level over its list of tiles.
 
-use super::{CoarseTargets, LevelNumbers, shading_constants};
+use super::{CoarseTargets, LevelNumbers, by_size};
 use crate::composite::LIGHT_FORMAT;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read, uniform, written};
 use crate::recorder::Recorder;
@@ -10,7 +10,8 @@ use crate::{Composite, Settings, shader};
 /// Shades tiles by dispatches over lists.
 #[derive(Debug)]
 pub(crate) struct ComputeBackend {
-    shade: wgpu::ComputePipeline,
+    /// Of single pixels, and of larger blocks.
+    shade: [wgpu::ComputePipeline; 2],
     shade_layout: wgpu::BindGroupLayout,
     level_numbers: LevelNumbers,
 }
@@ -37,15 +38,19 @@ impl ComputeBackend {
             wgpu::ShaderStages::COMPUTE,
             if has_light { &types } else { &types[..4] },
         );
-        Self {
-            shade: shader::compute(
+        let module = shader::module(gpu, "coarse shading, list", shader);
+        let shade = by_size(settings, |constants| {
+            shader::compute(
                 gpu,
                 "coarse shading, list",
-                &shader::module(gpu, "coarse shading, list", shader),
+                &module,
                 "shade_tiles",
                 &[frame_layout, input_layout, &shade_layout],
-                &shading_constants(settings),
-            ),
+                constants,
+            )
+        });
+        Self {
+            shade,
             shade_layout,
             level_numbers: LevelNumbers::new(gpu),
         }
@@ -76,9 +81,9 @@ impl ComputeBackend {
             })
             .collect();
         let mut pass = recorder.compute_pass("shading");
-        pass.set_pipeline(&self.shade);
         pass.set_bind_group(1, input, &[]);
         for ((level, _), group) in levels().zip(&shading) {
+            pass.set_pipeline(&self.shade[usize::from(level > 0)]);
             pass.set_bind_group(2, group, &[]);
             pass.dispatch_workgroups_indirect(&target.dispatches, u64::from(level) * 16);
         }

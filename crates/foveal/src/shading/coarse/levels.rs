@@ -13,9 +13,24 @@ pub(super) fn needs_lists(settings: &Settings) -> bool {
 }
 
 /// Settings that change the shading shaders.
-pub(super) fn shading_constants(settings: &Settings) -> Vec<(&'static str, f64)> {
+fn shading_constants(settings: &Settings) -> Vec<(&'static str, f64)> {
     let mut constants = lighting_constants(settings);
     let typical = settings.coarse.sample == CoarseSample::Typical;
     constants.push(("TYPICAL", f64::from(u8::from(typical))));
     constants
+}
+
+/// Two pipelines that shade, by their constants: for single pixels, and for larger blocks. Samples that
+/// hold no light are shaded alike in both.
+pub(super) fn by_size<P: Clone>(
+    settings: &Settings,
+    pipeline: impl Fn(&[(&'static str, f64)]) -> P,
+) -> [P; 2] {
+    let mut constants = shading_constants(settings);
+    let of_blocks = pipeline(&constants);
+    if settings.coarse.composite != Composite::Light {
+        return [of_blocks.clone(), of_blocks];
+    }
+    constants.push(("SINGLE_PIXELS", 1.0));
+    [pipeline(&constants), of_blocks]
 }

@@ -16,6 +16,15 @@ const LEAST_COSINE: f32 = 0.1;
 // Luminance, by display white, below which a difference counts as relative to this.
 const DARK: f32 = 0.05;
 
+// By how much lights in all directions widen a highlight. Found by measurement: 0.5, which follows
+// from half-way directions' turning by half as much as the lights, makes rough stones too bright.
+const SPREAD: f32 = 0.1;
+
+// Tangent of the angle by which a normal is tilted to ask what else it would show, and, for pixels that
+// are turned as far from a sample's normal, one minus nearly its cosine.
+const TILT: f32 = 0.5;
+const WHOLLY_TILTED: f32 = 0.1;
+
 // Light is packed in this unit: daylight of 100,000 lux is beyond what a shared exponent holds.
 const LIGHT_UNIT: f32 = 16.0;
 
@@ -27,13 +36,15 @@ struct SampleLight {
     // Unit directions, world space.
     direction: vec3f,
     specular_direction: vec3f,
-    // Added to a surface's squared alpha.
+    // Added to a surface's squared alpha: at most SPREAD.
     spread: f32,
     // The sample's mean normal, world space.
     normal: vec3f,
-    // Of the lamps' luminance within the sample's block, by shadows: the standard deviation, as a part
-    // of that luminance and DARK.
+    // Of the lamps' luminance within the sample's block, by shadows and by normals at its rim: the
+    // standard deviation, as a part of that luminance and DARK.
     deviation: f32,
+    // The same on a surface that is tilted from the sample's.
+    tilted_deviation: f32,
 }
 
 // What a surface makes of light that reaches it: its factors of scattered and of mirrored light.
@@ -76,31 +87,43 @@ fn direction_from_bits(bits: u32) -> vec3f {
     return unit_from_octahedral(vec2f(vec2u(bits, bits >> 10u) & vec2u(0x3ffu)) / 511.0 - 1.0);
 }
 
+// Four bits for a deviation of up to 15: what a sample misses may be many times what it holds.
+fn deviation_bits(deviation: f32) -> u32 {
+    let d = min(deviation, 100.0);
+    return min(u32(15.5 * d / (0.5 + d) + 0.5), 15u);
+}
+
+fn deviation_from_bits(bits: u32) -> f32 {
+    return 0.5 * f32(bits) / (15.5 - f32(bits));
+}
+
 // x: diffuse, y: specular, as shared exponents; z and w: directions as 2 x 10 bits; above them in z
-// the square root of the spread in 8 bits and the deviation in 4; above them in w the normal as 2 x 6
-// bits.
+// the square root of the spread and both deviations in 4 bits each; above them in w the normal as
+// 2 x 6 bits.
 fn pack_light(l: SampleLight) -> vec4u {
     let normal = snorm_bits(octahedral_from_unit(l.normal), 31.0);
     return vec4u(
         pack_shared_exponent(l.diffuse / LIGHT_UNIT),
         pack_shared_exponent(l.specular / LIGHT_UNIT),
         direction_bits(l.direction)
-            | (u32(sqrt(saturate(l.spread)) * 255.0 + 0.5) << 20u)
-            | (u32(saturate(l.deviation) * 15.0 + 0.5) << 28u),
+            | (u32(sqrt(saturate(l.spread / SPREAD)) * 15.0 + 0.5) << 20u)
+            | (deviation_bits(l.tilted_deviation) << 24u)
+            | (deviation_bits(l.deviation) << 28u),
         direction_bits(l.specular_direction) | (normal.x << 20u) | (normal.y << 26u),
     );
 }
 
 fn unpack_light(words: vec4u) -> SampleLight {
     let normal = vec2f(vec2u(words.w >> 20u, words.w >> 26u) & vec2u(0x3fu)) / 31.0 - 1.0;
-    let root = f32((words.z >> 20u) & 0xffu) / 255.0;
+    let root = f32((words.z >> 20u) & 0xfu) / 15.0;
     return SampleLight(
         LIGHT_UNIT * unpack_shared_exponent(words.x),
         LIGHT_UNIT * unpack_shared_exponent(words.y),
         direction_from_bits(words.z),
         direction_from_bits(words.w),
-        root * root,
+        SPREAD * root * root,
         unit_from_octahedral(normal),
-        f32(words.z >> 28u) / 15.0,
+        deviation_from_bits(words.z >> 28u),
+        deviation_from_bits((words.z >> 24u) & 0xfu),
     );
 }

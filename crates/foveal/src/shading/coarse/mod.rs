@@ -33,5 +33,5 @@ mod tests;
 
 pub(crate) use crate::formats::STENCIL_FORMAT;
 pub(crate) use levels::LEVELS;
-use levels::shading_constants;
+use levels::by_size;
 pub(crate) use stage::CoarseShading;

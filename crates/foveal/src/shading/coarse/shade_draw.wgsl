@@ -18,7 +18,7 @@ struct Shaded {
 
 @fragment
 fn shade_blocks(in: LevelVertex) -> Shaded {
-    let lit = light_block(vec2u(in.position.xy), in.level);
+    let lit = light_block(vec2u(in.position.xy), level_of(in.level));
     return Shaded(lit.radiance, lit.light);
 }
 #else

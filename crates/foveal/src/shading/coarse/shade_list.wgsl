@@ -20,7 +20,7 @@ fn shade_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
     }
     let block = listed_block(index);
 #ifdef LIGHT
-    let lit = light_block(block, current.level);
+    let lit = light_block(block, level_of(current.level));
     textureStore(radiance, block, lit.radiance);
     textureStore(light, block, lit.light);
 #else

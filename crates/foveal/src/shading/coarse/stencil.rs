@@ -5,7 +5,7 @@
 //! discards what is no tile and the stencil operation does the writing; the shading draw is then
 //! rejected before its shader runs wherever the test fails.
 
-use super::{CoarseTargets, STENCIL_FORMAT, shading_constants};
+use super::{CoarseTargets, STENCIL_FORMAT, by_size};
 use crate::composite::LIGHT_FORMAT;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
 use crate::recorder::{Recorder, overwritten};
@@ -17,7 +17,8 @@ use crate::{Composite, Settings, shader};
 #[derive(Debug)]
 pub(crate) struct StencilBackend {
     mark: wgpu::RenderPipeline,
-    shade: wgpu::RenderPipeline,
+    /// Of single pixels, and of larger blocks.
+    shade: [wgpu::RenderPipeline; 2],
     cells_layout: wgpu::BindGroupLayout,
 }
 
@@ -94,21 +95,20 @@ impl StencilBackend {
                 ..Screen::of_level("tile marks", &marks, "mark")
             },
         );
-        let constants = shading_constants(settings);
         let blocks = shader::module(gpu, "coarse shading, draw", shader);
-        let shade = shader::screen(
-            gpu,
-            &Screen {
+        let shade = by_size(settings, |constants| {
+            let screen = Screen {
                 groups: &[frame_layout, input_layout],
                 targets: &targets(wgpu::ColorWrites::ALL),
                 depth_stencil: Some(stencil_state(
                     wgpu::CompareFunction::Equal,
                     wgpu::StencilOperation::Keep,
                 )),
-                constants: &constants,
+                constants,
                 ..Screen::of_level("coarse shading", &blocks, "shade_blocks")
-            },
-        );
+            };
+            shader::screen(gpu, &screen)
+        });
         Self {
             mark,
             shade,
@@ -154,7 +154,7 @@ impl StencilBackend {
             pass.set_pipeline(&self.mark);
             pass.set_bind_group(1, &cells, &[]);
             target.samples.draw(&mut pass, level);
-            pass.set_pipeline(&self.shade);
+            pass.set_pipeline(&self.shade[usize::from(level > 0)]);
             pass.set_bind_group(1, input, &[]);
             target.samples.draw(&mut pass, level);
         }

@@ -70,5 +70,6 @@ fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
         spread,
         s.normal,
         0.0,
+        0.0,
     )));
 }

@@ -23,10 +23,6 @@ fn measure(tile: u32, found: f32, expected: f32, is_own: bool) {
     }
 }
 
-// The samples are single pixels. Their level is a constant then, so that compilers leave out what blocks
-// need, for which devices that run all branches would pay.
-override SINGLE_PIXELS: bool = false;
-
 @compute @workgroup_size(64)
 fn shade_samples(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = list_index(group, local, dispatch.groups.x);
@@ -35,10 +31,7 @@ fn shade_samples(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_
     }
     let from_end = arrayLength(&samples_listed) - 1u - index;
     let entry = samples_listed[select(from_end, index, SINGLE_PIXELS)];
-    var level = 0u;
-    if !SINGLE_PIXELS {
-        level = entry.x >> 28u;
-    }
+    let level = level_of(entry.x >> 28u);
     let texel = entry_texel(entry.x);
     let lit = light_block(texel >> vec2u(level), level);
     textureStore(light, texel, lit.light);
