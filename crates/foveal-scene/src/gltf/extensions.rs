@@ -32,13 +32,15 @@ const HONOURED: &[&str] = &[
     "KHR_texture_transform",
 ];
 
-/// Without effect on a picture: metadata, interaction, sound, physics.
+/// Without effect on a picture: metadata, interaction, sound, physics, what triangles once were.
 const INVISIBLE: &[&str] = &[
     "AGI_articulations",
     "AGI_stk_metadata",
     "EXT_instance_features",
     "EXT_mesh_features",
     "EXT_structural_metadata",
+    "FB_ngon_encoding",
+    "GODOT_single_root",
     "KHR_audio_emitter",
     "KHR_interactivity",
     "KHR_node_hoverability",

@@ -218,6 +218,8 @@ fn extensions_without_effect_on_the_picture_make_no_noise() {
         "KHR_xmp_json_ld",
         "KHR_texture_basisu",
         "EXT_structural_metadata",
+        "FB_ngon_encoding",
+        "GODOT_single_root",
         "KHR_draco_mesh_compression",
         "EXT_meshopt_compression",
     ]);
