@@ -111,7 +111,8 @@ fn gather(texel: vec2u, own: Tile, s: Surface, by: LightFactors, v: vec3f, depth
         sum.specular_direction += weight * luminance(mirror) * sampled.specular_direction;
         sum.spread += weight * sampled.spread;
         let shown = luminance(reflected(by, diffuse, mirror));
-        let tilted = sampled.tilted_deviation * saturate((1.0 - cosine) / WHOLLY_TILTED);
+        let turned = saturate((1.0 - cosine - NORMAL_ROUNDING) / (WHOLLY_TILTED - NORMAL_ROUNDING));
+        let tilted = sampled.tilted_deviation * turned;
         let uneven = sampled.deviation * sampled.deviation + tilted * tilted;
         let whole = shown + DARK / frame.exposure;
         sum.squares += weight * (shown * shown + WITHIN_A_BLOCK * uneven * whole * whole);

@@ -42,7 +42,7 @@ fn samples_hold_the_lamps_light() {
     }
 }
 
-/// Whether deviations are packed alike, or into neighbouring bits.
+/// Whether two deviations are packed within three quarters of a step of one another.
 fn is_close(a: f32, b: f32) -> bool {
     let [a, b] = [a, b].map(|d| d / (0.5 + d));
     (a - b).abs() < 0.05

@@ -29,6 +29,7 @@ const WITHIN_A_BLOCK: f32 = 0.175;
 const DARK: f32 = 0.05;
 const TILT: f32 = 0.5;
 const WHOLLY_TILTED: f32 = 0.1;
+const NORMAL_ROUNDING: f32 = 0.0023;
 const VARIANCE_OF_NORMALS: f32 = 0.2;
 
 /// As in `shading/coarse/light.wgsl`.
@@ -150,7 +151,7 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    pub(super) fn at(&self, texel: UVec2) -> usize {
+    fn at(&self, texel: UVec2) -> usize {
         (texel.y * self.size.x + texel.x) as usize
     }
 
@@ -279,7 +280,8 @@ impl<'a> Inputs<'a> {
         let direction = lit.direction.try_normalize().unwrap_or(s.normal);
         let specular_direction = lit.specular_direction.try_normalize().unwrap_or(s.normal);
         let together = lit.specular_direction.length() / luminance(lit.specular).max(1e-30);
-        let spread = SPREAD * (1.0 - together.min(1.0));
+        let root = ((1.0 - together.min(1.0)).sqrt() * 15.0).round() / 15.0;
+        let spread = SPREAD * root * root;
         let lobe = highlight(s.normal, v, specular_direction, squared_alpha(&s) + spread);
         let scattered = scattered(&s) * lit.diffuse;
         let told_on = |n: Vec3| {
@@ -374,7 +376,8 @@ impl<'a> Inputs<'a> {
             let shown = luminance(scattered * here + mirrored * mirror);
             diffuse += weight * here;
             specular += weight * mirror;
-            let turned = ((1.0 - cosine) / WHOLLY_TILTED).min(1.0);
+            let turned = (1.0 - cosine - NORMAL_ROUNDING) / (WHOLLY_TILTED - NORMAL_ROUNDING);
+            let turned = turned.clamp(0.0, 1.0);
             let uneven = light.deviation.powi(2) + (light.tilted_deviation * turned).powi(2);
             between += weight * shown * shown;
             squares += weight * (shown * shown + WITHIN_A_BLOCK * uneven * (shown + dark).powi(2));

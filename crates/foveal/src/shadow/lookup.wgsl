@@ -295,8 +295,8 @@ fn rim_passing(tile: ShadowTile, at: vec2f, depth: f32) -> f32 {
 }
 
 // Variance for each unit of the largest difference within a block. Found by measurement together with
-// `WITHIN_A_BLOCK` (composite/gather.wgsl). With a larger one more is cut off: a sample holds deviations of
-// up to the light on itself, which is little in shadow.
+// `WITHIN_A_BLOCK` (composite/gather.wgsl), when a sample held deviations of up to the light on itself
+// alone.
 const VARIANCE_OF_APART: f32 = 0.2;
 
 // By how much the part of a light's rays that reaches four pixels at a rim differs from the sample's where

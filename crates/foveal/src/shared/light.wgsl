@@ -52,12 +52,12 @@ struct Normals {
     counts: vec4f,
 }
 
-// The block of pixels that a sample stands for, by eight pixels at its rim and by normals. Of a pixel
-// none counts.
+// The block of pixels that a sample stands for, by eight pixels at its rim and by normals. Of a
+// single pixel none counts.
 struct Block {
-    is_larger: bool,
     first: Rim,
     second: Rim,
+    asks_normals: bool,
     // Normals of the first four pixels at the rim.
     at_rim: Normals,
     // Others that its pixels may have: the sample's own, tilted to four sides.
@@ -69,7 +69,7 @@ override BOTH_RIMS: bool = true;
 
 const NO_RIM: Rim = Rim(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
 const NO_NORMALS: Normals = Normals(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
-const PIXEL: Block = Block(false, NO_RIM, NO_RIM, NO_NORMALS, NO_NORMALS);
+const PIXEL: Block = Block(NO_RIM, NO_RIM, false, NO_NORMALS, NO_NORMALS);
 
 // What of a light's rays arrives where it is looked at.
 struct Arriving {

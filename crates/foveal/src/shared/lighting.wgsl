@@ -71,19 +71,30 @@ fn fresnel_of(mirror: Mirror, v_dot_h: f32) -> vec3f {
     return mirror.at_normal + (mirror.at_grazing - mirror.at_normal) * (m2 * m2 * m);
 }
 
+// What a surface makes of light by the cosine between the directions to the eye and half-way to it:
+// the part that is left for diffuse reflection, and Fresnel's reflectance.
+struct Shares {
+    left: f32,
+    mirrored: vec3f,
+}
+
+fn shares_of(mirror: Mirror, v_dot_h: f32) -> Shares {
+    let m = 1.0 - saturate(v_dot_h);
+    let m2 = m * m;
+    let m5 = m2 * m2 * m;
+    let left = 1.0 - (mirror.kept.x + (mirror.kept.y - mirror.kept.x) * m5);
+    return Shares(left, mirror.at_normal + (mirror.at_grazing - mirror.at_normal) * m5);
+}
+
 // Lambert and GGX: glTF 2.0 appendix B, with the height-correlated visibility term (Heitz 2014).
 fn reflect_ggx(s: Surface, mirror: Mirror, v: vec3f, l: vec3f, n_dot_l: f32) -> Reflection {
     let h = normalize(v + l);
-    let m = 1.0 - saturate(dot(v, h));
-    let m2 = m * m;
-    let m5 = m2 * m2 * m;
-    let fresnel = mirror.at_normal + (mirror.at_grazing - mirror.at_normal) * m5;
-    let left = 1.0 - (mirror.kept.x + (mirror.kept.y - mirror.kept.x) * m5);
-    let once = fresnel * ggx_lobe(s.normal, v, l, h, n_dot_l, squared_alpha(s));
+    let shares = shares_of(mirror, dot(v, h));
+    let once = shares.mirrored * ggx_lobe(s.normal, v, l, h, n_dot_l, squared_alpha(s));
     if MULTIPLE_SCATTERING {
-        return Reflection(left, once * mirror.gain);
+        return Reflection(shares.left, once * mirror.gain);
     }
-    return Reflection(left, once);
+    return Reflection(shares.left, once);
 }
 
 // Lambert and normalized Blinn-Phong, the exponent taken from the roughness.
@@ -105,17 +116,15 @@ fn shown_on(normals: Normals, s: Surface, by: vec2f, v: vec3f, a: IncidentLight)
 
 // The same for all normals of a block.
 fn shown_on_others(block: Block, s: Surface, mirror: Mirror, v: vec3f, a: IncidentLight) -> OnNormals {
-    if !block.is_larger {
+    if !block.asks_normals || all(a.irradiance <= vec3f(0.0)) {
         return NOTHING_ON_NORMALS;
     }
-    let m = 1.0 - saturate(dot(v, normalize(v + a.direction)));
-    let m5 = m * m * m * m * m;
-    let left = 1.0 - (mirror.kept.x + (mirror.kept.y - mirror.kept.x) * m5);
-    var mirrored = mirror.at_normal + (mirror.at_grazing - mirror.at_normal) * m5;
+    let shares = shares_of(mirror, dot(v, half_way(v, a.direction)));
+    var mirrored = shares.mirrored;
     if MULTIPLE_SCATTERING {
         mirrored *= mirror.gain;
     }
-    let by = vec2f(left * luminance(diffuse_color(s)) / PI, luminance(mirrored));
+    let by = vec2f(shares.left * luminance(diffuse_color(s)) / PI, luminance(mirrored));
     return OnNormals(shown_on(block.at_rim, s, by, v, a), shown_on(block.tilted, s, by, v, a));
 }
 
@@ -312,7 +321,7 @@ fn light_surface(s: Surface, v: vec3f, look: vec3f, pixel: vec2f, distance: f32,
         sum = add_directional(sum, s, mirror, v, block, i);
     }
     // Other normals of a block may face a light that the sample does not face.
-    let facing = select(s.normal, vec3f(0.0), block.is_larger);
+    let facing = select(s.normal, vec3f(0.0), block.asks_normals);
     var walk = first_light(pixel, distance, s.position, facing);
     loop {
         if walk.bits != 0u {

@@ -12,8 +12,8 @@
 #import shared/environment.wgsl
 #import shadow/lookup.wgsl
 
-// The samples are single pixels. Their level is a constant then, so that compilers leave out what blocks
-// need, for which devices that run all branches would pay.
+// The samples are single pixels. Their level is a constant then, so that compilers leave out what
+// blocks need, for which devices that run all branches would pay.
 override SINGLE_PIXELS: bool = false;
 
 fn level_of(level: u32) -> u32 {
@@ -23,11 +23,11 @@ fn level_of(level: u32) -> u32 {
     return level;
 }
 
-// What a sample's light tells other surfaces of its kind.
+// What a sample's light would make surfaces of its material show, as luminance.
 struct ToldLight {
-    // Luminance that a surface scatters that faces `direction`.
+    // Scattered by a surface that faces `direction`.
     diffuse: f32,
-    // Luminance that is mirrored, for each `highlight`.
+    // Mirrored, for each `highlight`.
     specular: f32,
     direction: vec3f,
     specular_direction: vec3f,
@@ -84,7 +84,7 @@ struct RimPixel {
     normal: vec3f,
 }
 
-// A place at a block's rim, in quarters of its side.
+// What is seen at a block's rim; `quarters`: the place, in quarters of the block's side.
 fn rim_of(block: vec2u, level: u32, quarters: vec2u, s: Surface) -> RimPixel {
     let first = block << vec2u(level);
     let within = (quarters * ((1u << level) - 1u) + 2u) >> vec2u(2u);
@@ -140,16 +140,16 @@ fn block_of(block: vec2u, level: u32, s: Surface, v: vec3f) -> Block {
     }
     // What other normals show is asked of GGX alone.
     if BLINN_PHONG {
-        return Block(true, first.rim, second, NO_NORMALS, NO_NORMALS);
+        return Block(first.rim, second, false, NO_NORMALS, NO_NORMALS);
     }
-    return Block(true, first.rim, second, first.normals, tilted_from(s.normal, v));
+    return Block(first.rim, second, true, first.normals, tilted_from(s.normal, v));
 }
 
-// Part of a squared difference between what a normal shows of the lamps and what it would be told to
-// that counts as variance. Found by measurement.
+// Part of the squared difference between what a normal shows of the lamps and what the sample's light
+// tells it that counts as variance. Found by measurement.
 const VARIANCE_OF_NORMALS: f32 = 0.2;
 
-// Luminance that surfaces with each of these normals would be told to show, by the light of a sample.
+// Luminance that a sample's light tells surfaces with these normals to show.
 fn told_on(normals: Normals, told: ToldLight, v: vec3f) -> vec4f {
     let cosines = max(cosines_to(normals, told.direction), vec4f(LEAST_COSINE));
     let mirrored = max(cosines_to(normals, told.specular_direction), vec4f(LEAST_COSINE));
@@ -184,7 +184,7 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
     let direction = direction_or(lit.direction, s.normal);
     let specular_direction = direction_or(lit.specular_direction, s.normal);
     let together = saturate(length(lit.specular_direction) / max(luminance(lit.specular), 1e-30));
-    let spread = SPREAD * (1.0 - together);
+    let spread = rounded_spread(SPREAD * (1.0 - together));
     let lobe = highlight(s.normal, v, specular_direction, squared_alpha(s) + spread);
     let scattered = diffuse_color(s) / PI * lit.diffuse;
     let told = ToldLight(

@@ -10,7 +10,7 @@ use crate::{Composite, Settings, shader};
 /// Shades tiles by dispatches over lists.
 #[derive(Debug)]
 pub(crate) struct ComputeBackend {
-    /// Of single pixels, and of larger blocks.
+    /// Of larger blocks, and of single pixels.
     shade: [wgpu::ComputePipeline; 2],
     shade_layout: wgpu::BindGroupLayout,
     level_numbers: LevelNumbers,
@@ -83,7 +83,7 @@ impl ComputeBackend {
         let mut pass = recorder.compute_pass("shading");
         pass.set_bind_group(1, input, &[]);
         for ((level, _), group) in levels().zip(&shading) {
-            pass.set_pipeline(&self.shade[usize::from(level > 0)]);
+            pass.set_pipeline(&self.shade[usize::from(level == 0)]);
             pass.set_bind_group(2, group, &[]);
             pass.dispatch_workgroups_indirect(&target.dispatches, u64::from(level) * 16);
         }

@@ -20,8 +20,8 @@ fn shading_constants(settings: &Settings) -> Vec<(&'static str, f64)> {
     constants
 }
 
-/// Two pipelines that shade, by their constants: for single pixels, and for larger blocks. Samples that
-/// hold no light are shaded alike in both.
+/// The shading pipeline for larger blocks and that for single pixels, by their constants. They are the
+/// same where samples hold no light.
 pub(super) fn by_size<P: Clone>(
     settings: &Settings,
     pipeline: impl Fn(&[(&'static str, f64)]) -> P,
@@ -32,5 +32,5 @@ pub(super) fn by_size<P: Clone>(
         return [of_blocks.clone(), of_blocks];
     }
     constants.push(("SINGLE_PIXELS", 1.0));
-    [pipeline(&constants), of_blocks]
+    [of_blocks, pipeline(&constants)]
 }

@@ -20,10 +20,12 @@ const DARK: f32 = 0.05;
 // from half-way directions' turning by half as much as the lights, makes rough stones too bright.
 const SPREAD: f32 = 0.1;
 
-// Tangent of the angle by which a normal is tilted to ask what else it would show, and, for pixels that
-// are turned as far from a sample's normal, one minus nearly its cosine.
+// Tangent of the angle by which normals are tilted to ask what they would show.
 const TILT: f32 = 0.5;
+// About one minus that angle's cosine: the turn from which on a pixel counts as wholly tilted.
 const WHOLLY_TILTED: f32 = 0.1;
+// One minus the cosine between a normal and what a sample holds of it, at most.
+const NORMAL_ROUNDING: f32 = 0.0023;
 
 // Light is packed in this unit: daylight of 100,000 lux is beyond what a shared exponent holds.
 const LIGHT_UNIT: f32 = 16.0;
@@ -43,7 +45,7 @@ struct SampleLight {
     // Of the lamps' luminance within the sample's block, by shadows and by normals at its rim: the
     // standard deviation, as a part of that luminance and DARK.
     deviation: f32,
-    // The same on a surface that is tilted from the sample's.
+    // What normals that are tilted from the sample's add to it, on surfaces that are turned so.
     tilted_deviation: f32,
 }
 
@@ -87,6 +89,21 @@ fn direction_from_bits(bits: u32) -> vec3f {
     return unit_from_octahedral(vec2f(vec2u(bits, bits >> 10u) & vec2u(0x3ffu)) / 511.0 - 1.0);
 }
 
+// The square root of a part of SPREAD in four bits.
+fn spread_bits(spread: f32) -> u32 {
+    return u32(sqrt(saturate(spread / SPREAD)) * 15.0 + 0.5);
+}
+
+fn spread_from_bits(bits: u32) -> f32 {
+    let root = f32(bits) / 15.0;
+    return SPREAD * root * root;
+}
+
+// A spread as it is held: what is divided by a highlight must be divided by the one that readers see.
+fn rounded_spread(spread: f32) -> f32 {
+    return spread_from_bits(spread_bits(spread));
+}
+
 // Four bits for a deviation of up to 15: what a sample misses may be many times what it holds.
 fn deviation_bits(deviation: f32) -> u32 {
     let d = min(deviation, 100.0);
@@ -106,7 +123,7 @@ fn pack_light(l: SampleLight) -> vec4u {
         pack_shared_exponent(l.diffuse / LIGHT_UNIT),
         pack_shared_exponent(l.specular / LIGHT_UNIT),
         direction_bits(l.direction)
-            | (u32(sqrt(saturate(l.spread / SPREAD)) * 15.0 + 0.5) << 20u)
+            | (spread_bits(l.spread) << 20u)
             | (deviation_bits(l.tilted_deviation) << 24u)
             | (deviation_bits(l.deviation) << 28u),
         direction_bits(l.specular_direction) | (normal.x << 20u) | (normal.y << 26u),
@@ -115,13 +132,12 @@ fn pack_light(l: SampleLight) -> vec4u {
 
 fn unpack_light(words: vec4u) -> SampleLight {
     let normal = vec2f(vec2u(words.w >> 20u, words.w >> 26u) & vec2u(0x3fu)) / 31.0 - 1.0;
-    let root = f32((words.z >> 20u) & 0xfu) / 15.0;
     return SampleLight(
         LIGHT_UNIT * unpack_shared_exponent(words.x),
         LIGHT_UNIT * unpack_shared_exponent(words.y),
         direction_from_bits(words.z),
         direction_from_bits(words.w),
-        SPREAD * root * root,
+        spread_from_bits((words.z >> 20u) & 0xfu),
         unit_from_octahedral(normal),
         deviation_from_bits(words.z >> 28u),
         deviation_from_bits((words.z >> 24u) & 0xfu),

@@ -17,7 +17,7 @@ use crate::{Composite, Settings, shader};
 #[derive(Debug)]
 pub(crate) struct StencilBackend {
     mark: wgpu::RenderPipeline,
-    /// Of single pixels, and of larger blocks.
+    /// Of larger blocks, and of single pixels.
     shade: [wgpu::RenderPipeline; 2],
     cells_layout: wgpu::BindGroupLayout,
 }
@@ -154,7 +154,7 @@ impl StencilBackend {
             pass.set_pipeline(&self.mark);
             pass.set_bind_group(1, &cells, &[]);
             target.samples.draw(&mut pass, level);
-            pass.set_pipeline(&self.shade[usize::from(level > 0)]);
+            pass.set_pipeline(&self.shade[usize::from(level == 0)]);
             pass.set_bind_group(1, input, &[]);
             target.samples.draw(&mut pass, level);
         }

@@ -60,7 +60,7 @@ fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     // As light from one direction each, which gives the same on this surface.
     let direction = direction_or(found.direction, s.normal);
     let specular_direction = direction_or(found.specular_direction, s.normal);
-    let spread = found.spread / found.weight;
+    let spread = rounded_spread(found.spread / found.weight);
     let lobe = highlight(s.normal, v, specular_direction, squared_alpha(s) + spread);
     textureStore(gathered, texel, pack_light(SampleLight(
         diffuse / max(dot(s.normal, direction), LEAST_COSINE),
