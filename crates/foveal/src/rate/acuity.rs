@@ -22,9 +22,9 @@ const SLOPE: f32 = 0.0275;
 
 /// Qualities in JOD, best first, and the factor on Guenter's angle that gives the blocks of each:
 /// means over the demo scene, Sponza and the castle with 1280 pixels over 60 degrees, five pictures
-/// (docs/benchmarks/coarse.md), before pixels were shaded by themselves where samples disagree: since
-/// then 9.5 gives 9.56 and 9.3 gives 9.41. That of 10 is extrapolated. Larger blocks than the last light no
-/// fewer pixels: more are left that no sample speaks for.
+/// (docs/benchmarks/coarse.md), before pixels were shaded by themselves where samples disagree or miss
+/// what other normals show: 9.5 now gives 9.68 and 9.3 gives 9.57. That of 10 is extrapolated. Larger
+/// blocks than the last light no fewer pixels: more are left that no sample speaks for.
 const QUALITIES: [(f32, f32); 7] = [
     (10.0, 0.07),
     (9.8, 0.2),
