@@ -7,6 +7,7 @@ use glam::{Mat4, Vec3};
 use crate::Settings;
 use crate::environment::EnvironmentTerms;
 use crate::lights::ClusterGrid;
+use crate::rate;
 use crate::shadow::LookupSettings;
 use crate::stereo::{Eye, EyeLayout};
 
@@ -79,6 +80,8 @@ pub(crate) struct FrameUniform {
     pub(crate) light_radius: f32,
     pub(crate) sun_tangent: f32,
     pub(crate) resting_views: u32,
+    pub(crate) most_apart: f32,
+    pub(crate) reserved: [u32; 3],
 }
 
 impl FrameUniform {
@@ -136,6 +139,8 @@ impl FrameUniform {
             light_radius: shadows.light_radius_m,
             sun_tangent: shadows.sun_tangent,
             resting_views: rests[0] | rests[1] << 1,
+            most_apart: rate::most_apart(settings.eye.quality_jod),
+            reserved: [0; 3],
         }
     }
 }

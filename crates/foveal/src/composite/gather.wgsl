@@ -24,13 +24,14 @@ const ON_PLANE: f32 = 0.2;
 const LEAST_ALIKE: f32 = 0.005;
 // Below this sum of weights no sample speaks for a pixel.
 const LEAST_WEIGHT: f32 = 0.02;
-// Standard deviation of what the samples say of a pixel, over its luminance, from which on the
-// pixel is shaded by itself: a shadow's edge or a highlight's lies between them. Found by
-// measurement.
-const MOST_APART: f32 = 0.1;
 // Part of the variance within a sample's block that counts as one between samples. Found by
 // measurement.
 const WITHIN_A_BLOCK: f32 = 0.175;
+
+// Change of depth per texel to the right and down.
+fn depth_slopes(texel: vec2u, depth: f32) -> vec2f {
+    return vec2f(depth_slope(texel, 0u, depth), depth_slope(texel, 1u, depth));
+}
 
 // Change of depth per texel along an axis: of the two sides of a texel the one that changes less.
 fn depth_slope(texel: vec2u, axis: u32, depth: f32) -> f32 {
@@ -59,12 +60,13 @@ struct Gathered {
     weight: f32,
 }
 
-// Whether no sample speaks for a pixel, or what they say of it lies too far apart. `lights`: what the
+// Whether no sample speaks for a pixel, or what they say of it lies too far apart: a shadow's edge or
+// a highlight's lies between them. `lights`: what the
 // surface reflects by all of them; `other`: what it shows of emission and the environment.
 fn is_unsure(found: Gathered, lights: vec3f, other: vec3f) -> bool {
     let mean = luminance(lights);
     let variance = max(found.squares / found.weight - mean * mean, 0.0);
-    let limit = MOST_APART * (mean + luminance(other) + DARK / frame.exposure);
+    let limit = frame.most_apart * (mean + luminance(other) + DARK / frame.exposure);
     return found.weight < LEAST_WEIGHT || variance > limit * limit;
 }
 
@@ -77,8 +79,7 @@ fn rise(view: u32, depth: f32, slope: vec2f, offset: vec2f, sample_depth: f32) -
     return apart / (length(offset) * pixel_side + 1e-6 * there);
 }
 
-fn gather(texel: vec2u, own: Tile, s: Surface, by: LightFactors, v: vec3f, depth: f32) -> Gathered {
-    let slope = vec2f(depth_slope(texel, 0u, depth), depth_slope(texel, 1u, depth));
+fn gather(texel: vec2u, own: Tile, s: Surface, by: LightFactors, v: vec3f, depth: f32, slope: vec2f) -> Gathered {
     let picture = picture_of(texel);
     let side = f32(1u << own.level);
     // Of the pixel on the lattice of the level's sample points.

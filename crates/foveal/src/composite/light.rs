@@ -1,7 +1,8 @@
 //! The composite of light: each pixel's own surface in the light of the samples around it
 //! (`light.wgsl`).
 //!
-//! Pixels that no sample speaks for are listed; the caller shades them.
+//! Pixels that no sample speaks for are listed: some for the caller to shade, the others to take
+//! those pixels' light (`leaders.wgsl`).
 
 use super::LightTargets;
 use crate::environment::environment_constants;
@@ -25,7 +26,12 @@ pub(crate) struct LightComposite {
     join_layout: wgpu::BindGroupLayout,
     size: wgpu::ComputePipeline,
     size_layout: wgpu::BindGroupLayout,
+    follow: wgpu::ComputePipeline,
+    follow_layout: wgpu::BindGroupLayout,
 }
+
+/// The place of the pixels that are led among the lists' counts and dispatches.
+const LED: u64 = 1;
 
 impl LightComposite {
     pub(crate) fn new(
@@ -48,9 +54,21 @@ impl LightComposite {
                 written(RADIANCE_FORMAT),
                 storage_write(),
                 storage_write(),
+                storage_write(),
             ],
         );
-        let size_layout = layout("unlit dispatch", &[storage_read(), storage_write()]);
+        let size_layout = layout("unlit dispatches", &[storage_read(), storage_write()]);
+        let follow_layout = layout(
+            "led pixels",
+            &[
+                sampled_layers(words),
+                sampled_layers(wgpu::TextureSampleType::Depth),
+                sampled(words),
+                written(RADIANCE_FORMAT),
+                storage_read(),
+                storage_read(),
+            ],
+        );
         let typical = settings.coarse.sample == CoarseSample::Typical;
         Self {
             join: shader::compute(
@@ -67,18 +85,32 @@ impl LightComposite {
             ),
             size: shader::compute(
                 gpu,
-                "unlit dispatch",
-                &shader::module(gpu, "unlit dispatch", shader::SHADING_COARSE_DISPATCH),
+                "unlit dispatches",
+                &shader::module(gpu, "unlit dispatches", shader::SHADING_COARSE_DISPATCH),
                 "size_dispatches",
                 &[&size_layout],
                 &[],
             ),
+            follow: shader::compute(
+                gpu,
+                "led pixels",
+                &shader::module(gpu, "led pixels", shader::COMPOSITE_FOLLOW),
+                "follow",
+                &[frame_layout, &follow_layout],
+                &[
+                    &environment_constants(settings)[..],
+                    &[("LIST", LED as f64)],
+                ]
+                .concat(),
+            ),
             join_layout,
             size_layout,
+            follow_layout,
         }
     }
 
-    /// Encodes the passes: fills the radiance target but for `light.unlit`, which it lists.
+    /// Encodes the passes: fills the radiance target but for the pixels that it lists in
+    /// `light.unlit`.
     pub(super) fn join(
         &self,
         recorder: &mut Recorder<'_>,
@@ -88,7 +120,7 @@ impl LightComposite {
     ) {
         let device = &recorder.gpu.device;
         let view = wgpu::BindingResource::TextureView;
-        let count = light.unlit_count.as_entire_binding();
+        let counts = light.unlit_counts.as_entire_binding();
         let group = bind_group(
             device,
             "light composite",
@@ -100,17 +132,20 @@ impl LightComposite {
                 view(&targets.gbuffer.depth_layers),
                 view(&light.samples.whole),
                 view(&targets.radiance_view),
-                count.clone(),
-                light.unlit.texels.as_entire_binding(),
+                counts.clone(),
+                light.unlit.as_entire_binding(),
+                light.wanted.as_entire_binding(),
             ],
         );
         let sizing = bind_group(
             device,
-            "unlit dispatch",
+            "unlit dispatches",
             &self.size_layout,
-            &[count, light.unlit.dispatch.as_entire_binding()],
+            &[counts, light.unlit_dispatches.as_entire_binding()],
         );
-        recorder.encoder.clear_buffer(&light.unlit_count, 0, None);
+        for buffer in [&light.unlit_counts, &light.wanted] {
+            recorder.encoder.clear_buffer(buffer, 0, None);
+        }
         let size = targets.radiance_view.texture().size();
         let mut pass = recorder.compute_pass("composite");
         pass.set_pipeline(&self.join);
@@ -119,5 +154,33 @@ impl LightComposite {
         pass.set_pipeline(&self.size);
         pass.set_bind_group(0, &sizing, &[]);
         pass.dispatch_workgroups(1, 1, 1);
+    }
+
+    /// Encodes the pass: once the other pixels of `light.unlit` are shaded, those that are led take
+    /// their light.
+    pub(super) fn follow(
+        &self,
+        recorder: &mut Recorder<'_>,
+        targets: &Targets,
+        light: &LightTargets,
+    ) {
+        let view = wgpu::BindingResource::TextureView;
+        let group = bind_group(
+            &recorder.gpu.device,
+            "led pixels",
+            &self.follow_layout,
+            &[
+                view(&targets.gbuffer.surface_layers),
+                view(&targets.gbuffer.depth_layers),
+                view(light.samples.level(0)),
+                view(&targets.radiance_view),
+                light.unlit.as_entire_binding(),
+                light.unlit_dispatches.as_entire_binding(),
+            ],
+        );
+        let mut pass = recorder.compute_pass("composite");
+        pass.set_pipeline(&self.follow);
+        pass.set_bind_group(1, &group, &[]);
+        pass.dispatch_workgroups_indirect(&light.unlit_dispatches, LED * 16);
     }
 }

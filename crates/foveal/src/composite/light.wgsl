@@ -1,9 +1,11 @@
 // Each pixel's own surface in the light of the samples around it. CPU twin:
 // `composite/light_twin.rs`.
 //
-// Where no sample counts, the pixel is listed, to be shaded by itself.
+// Where no sample counts, the pixel is listed, to be shaded by itself or to take its leader's light.
 
 #import composite/gather.wgsl
+#import composite/leaders.wgsl
+#import composite/led.wgsl
 #import composite/tiling.wgsl
 #import shading/coarse/light.wgsl
 #import shared/blocks.wgsl
@@ -11,16 +13,19 @@
 #import shared/layers.wgsl
 #import shared/surface.wgsl
 #import shared/environment.wgsl
+#import shared/wanted.wgsl
 
 @group(1) @binding(2) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(3) var gbuffer_depth: texture_depth_2d_array;
 // Mip l: the light of level l's samples.
 @group(1) @binding(4) var light: texture_2d<u32>;
 @group(1) @binding(5) var radiance: texture_storage_2d<rgba16float, write>;
-// The first is the number of listed pixels.
+// The first is the number of pixels to be shaded, the second of those that are led.
 @group(1) @binding(6) var<storage, read_write> counts: array<atomic<u32>, 9>;
-// Pixels that no sample speaks for, as x | y << 16.
+// Pixels to be shaded, as x | y << 16; from the end back those that are led, as `led_entry` has them.
 @group(1) @binding(7) var<storage, read_write> unlit: array<u32>;
+// A bit for each pixel that is to be shaded.
+@group(1) @binding(8) var<storage, read_write> wanted: array<atomic<u32>>;
 
 // Samples lie at one of five places of their block, which their alpha tells.
 override TYPICAL: bool = false;
@@ -61,12 +66,20 @@ fn join(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let by = light_factors(s, v);
-    let found = gather(texel, own, s, by, v, depth);
+    let slope = depth_slopes(texel, depth);
+    let found = gather(texel, own, s, by, v, depth, slope);
     let seen = environment_seen(pixel, view_distance(depth));
     let lights = reflected(by, found.diffuse, found.specular) / found.weight;
     let other = s.emissive + ambient(s, v, seen, look);
     if is_unsure(found, lights, other) {
-        unlit[atomicAdd(&counts[0], 1u)] = texel.x | (texel.y << 16u);
+        let led = is_led(texel, own.level, s.normal, depth, slope);
+        if led {
+            unlit[arrayLength(&unlit) - 1u - atomicAdd(&counts[1], 1u)] = led_entry(texel);
+        }
+        let shaded = select(texel, leader_of(texel), led);
+        if is_first_to_want(shaded) {
+            unlit[atomicAdd(&counts[0], 1u)] = shaded.x | (shaded.y << 16u);
+        }
         return;
     }
     textureStore(radiance, texel, vec4f(min(other + lights, vec3f(65504.0)), 1.0));

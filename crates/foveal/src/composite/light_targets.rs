@@ -3,24 +3,33 @@
 use crate::Settings;
 use crate::formats::LIGHT_FORMAT;
 use crate::gpu::{Gpu, MipChain};
-use crate::shading::SampleList;
 
 /// The samples' light, and the pixels without, of one frame size.
 #[derive(Debug)]
 pub(crate) struct LightTargets {
     /// Mip l holds the light of the samples of level l.
     pub(crate) samples: MipChain,
-    /// Pixels that no sample speaks for.
-    pub(crate) unlit: SampleList,
-    /// Their number, with room for the counts of nine levels, as the pass that sizes dispatches has
-    /// them.
-    pub(crate) unlit_count: wgpu::Buffer,
+    /// Pixels to be shaded where no sample speaks for them; from the end back those that take their
+    /// leader's light.
+    pub(crate) unlit: wgpu::Buffer,
+    /// The numbers of both, with room for the counts of nine levels, as the pass that sizes
+    /// dispatches has them.
+    pub(crate) unlit_counts: wgpu::Buffer,
+    /// Workgroups in x, y, z and length of either list.
+    pub(crate) unlit_dispatches: wgpu::Buffer,
+    /// A bit for each pixel that is to be shaded.
+    pub(super) wanted: wgpu::Buffer,
 }
 
 impl LightTargets {
     /// Bytes of everything.
     pub(crate) fn bytes(&self) -> u64 {
-        let buffers = [&self.unlit.texels, &self.unlit.dispatch, &self.unlit_count];
+        let buffers = [
+            &self.unlit,
+            &self.unlit_counts,
+            &self.unlit_dispatches,
+            &self.wanted,
+        ];
         self.samples.bytes() + buffers.map(wgpu::Buffer::size).iter().sum::<u64>()
     }
 
@@ -47,14 +56,21 @@ impl LightTargets {
                     | wgpu::TextureUsages::STORAGE_BINDING
                     | wgpu::TextureUsages::COPY_SRC,
             ),
-            unlit: SampleList {
-                texels: buffer("unlit pixels", pixels * 4, wgpu::BufferUsages::empty()),
-                dispatch: buffer("unlit dispatch", levels * 16, wgpu::BufferUsages::INDIRECT),
-            },
-            unlit_count: buffer(
-                "unlit count",
+            unlit: buffer("unlit pixels", pixels * 4, wgpu::BufferUsages::empty()),
+            unlit_counts: buffer(
+                "unlit counts",
                 levels * 4,
                 wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+            ),
+            unlit_dispatches: buffer(
+                "unlit dispatches",
+                levels * 16,
+                wgpu::BufferUsages::INDIRECT,
+            ),
+            wanted: buffer(
+                "wanted pixels",
+                pixels.div_ceil(32) * 4,
+                wgpu::BufferUsages::COPY_DST,
             ),
         }
     }

@@ -1,7 +1,7 @@
 //! The twin of samples' light and of the composite that puts pixels' surfaces into it.
 
 use foveal_scene::{Camera, Projection, Scene};
-use glam::{IVec2, UVec2, Vec2, Vec3};
+use glam::{IVec2, UVec2, Vec2, Vec2Swizzles, Vec3};
 
 use crate::gpu::read_level;
 use crate::lights::LightUniform;
@@ -12,6 +12,7 @@ use crate::shading::twin::{
     unpack_shared_exponent, unpack_surface,
 };
 
+use crate::rate::most_apart;
 use crate::shadow::{Lookup, lookup};
 use crate::testing::{f32_of_half, gpu, rate_cells, texels};
 use crate::{Renderer, Settings, Shadows};
@@ -24,13 +25,15 @@ const OFF_PLANE: f32 = 0.6;
 const ON_PLANE: f32 = 0.2;
 const LEAST_ALIKE: f32 = 0.005;
 const LEAST_WEIGHT: f32 = 0.02;
-const MOST_APART: f32 = 0.1;
 const WITHIN_A_BLOCK: f32 = 0.175;
 const DARK: f32 = 0.05;
 const TILT: f32 = 0.5;
 const WHOLLY_TILTED: f32 = 0.1;
 const NORMAL_ROUNDING: f32 = 0.0023;
 const VARIANCE_OF_NORMALS: f32 = 0.2;
+const LED_FROM: u32 = 2;
+const LED_NORMAL: f32 = 0.95;
+const LED_OFF_PLANE: f32 = 0.005;
 
 /// As in `shading/coarse/light.wgsl`.
 const LIGHT_UNIT: f32 = 16.0;
@@ -330,13 +333,17 @@ impl<'a> Inputs<'a> {
         }
     }
 
+    fn slopes(&self, texel: UVec2) -> Vec2 {
+        Vec2::new(self.slope(texel, UVec2::X), self.slope(texel, UVec2::Y))
+    }
+
     /// `light.wgsl`.
     pub(super) fn pixel(&self, texel: UVec2) -> Joined {
         let level = self.level(texel);
         let s = self.surface(texel);
         let v = to_eye(self.camera, s.position);
         let depth = self.depth(texel);
-        let slope = Vec2::new(self.slope(texel, UVec2::X), self.slope(texel, UVec2::Y));
+        let slope = self.slopes(texel);
         let side = (1u32 << level) as f32;
         let place = (texel.as_vec2() - (0.5 * side).floor()) / side;
         let along = place - place.floor();
@@ -387,13 +394,46 @@ impl<'a> Inputs<'a> {
         let lamps = (scattered * diffuse + mirrored * specular) / sum;
         let mean = luminance(lamps);
         let lit = mean + luminance(other) + dark;
+        let most_apart = most_apart(self.settings.eye.quality_jod);
         let apart_by = |squares: f32| (squares / sum - mean * mean).max(0.0).sqrt() / lit;
         let apart = apart_by(squares);
         Joined {
-            radiance: (sum >= LEAST_WEIGHT && apart <= MOST_APART).then_some(other + lamps),
-            is_close: (sum - LEAST_WEIGHT).abs() < 1e-3 || (apart - MOST_APART).abs() < 0.005,
+            radiance: (sum >= LEAST_WEIGHT && apart <= most_apart).then_some(other + lamps),
+            is_close: (sum - LEAST_WEIGHT).abs() < 1e-3 || (apart - most_apart).abs() < 0.005,
             is_disputed: sum >= LEAST_WEIGHT,
-            is_uneven: sum >= LEAST_WEIGHT && apart_by(between) < MOST_APART - 0.005,
+            is_uneven: sum >= LEAST_WEIGHT && apart_by(between) < most_apart - 0.005,
         }
+    }
+
+    /// The pixel whose light one that no sample speaks for takes, `composite/led.wgsl`: `None` where it
+    /// is shaded by itself. The flag: float by float may decide otherwise.
+    pub(super) fn leader(&self, texel: UVec2) -> (Option<UVec2>, bool) {
+        let group = texel / 2;
+        let leader = 2 * group + group.yx() % 2;
+        let outside = leader.cmpge(self.size).any();
+        if self.level(texel) < LED_FROM || outside || leader == texel {
+            return (None, false);
+        }
+        let depth = self.depth(texel);
+        let expected = depth + self.slopes(texel).dot(leader.as_vec2() - texel.as_vec2());
+        let off_plane = (self.depth(leader) - expected).abs() / depth;
+        let normal = self.surface(texel).normal;
+        let cosine = normal.dot(self.surface(leader).normal);
+        let is_led = cosine >= LED_NORMAL && off_plane <= LED_OFF_PLANE;
+        let is_close =
+            (cosine - LED_NORMAL).abs() < 1e-3 || (off_plane - LED_OFF_PLANE).abs() < 1e-4;
+        (is_led.then_some(leader), is_close)
+    }
+
+    /// What a pixel shows of its leader's light: `composite/follow.wgsl`.
+    pub(super) fn led(&self, texel: UVec2, leader: UVec2) -> Vec3 {
+        let light = unpack_light(self.light[0][self.index(leader, 0)]);
+        let s = self.surface(texel);
+        let v = to_eye(self.camera, s.position);
+        let diffuse = light.diffuse * s.normal.dot(light.direction).max(LEAST_COSINE);
+        let a2 = squared_alpha(&s) + light.spread;
+        let mirror = light.specular * highlight(s.normal, v, light.specular_direction, a2);
+        let lamps = scattered(&s) * diffuse + environment_reflectance(&s, v) * mirror;
+        s.emissive + ambient(self.scene, &s, v) + lamps
     }
 }

@@ -86,4 +86,16 @@ impl CompositePass {
             (Self::Smooth(_), None, _) | (Self::Light(_), _, None) => {}
         }
     }
+
+    /// Encodes what follows once the pixels that [`Self::join`] left were shaded.
+    pub(crate) fn follow(
+        &self,
+        recorder: &mut Recorder<'_>,
+        targets: &Targets,
+        light: &LightTargets,
+    ) {
+        if let Self::Light(composite) = self {
+            composite.follow(recorder, targets, light);
+        }
+    }
 }

@@ -20,24 +20,45 @@ const ACUITY: f32 = 1.0 / 48.0 * std::f32::consts::PI / 180.0;
 /// difference.
 const SLOPE: f32 = 0.0275;
 
-/// Qualities in JOD, best first, and the factor on Guenter's angle that gives the blocks of each:
-/// means over the demo scene, Sponza and the castle with 1280 pixels over 60 degrees, five pictures
-/// (docs/benchmarks/coarse.md), before pixels were shaded by themselves where samples disagree or miss
-/// what other normals show: 9.5 now gives 9.68 and 9.3 gives 9.57. That of 10 is extrapolated. Larger
-/// blocks than the last light no fewer pixels: more are left that no sample speaks for.
-const QUALITIES: [(f32, f32); 7] = [
+/// Standard deviation of what samples of light say of a pixel, over its luminance, from which on the
+/// pixel is shaded, by quality in JOD. Found by measurement together with the blocks
+/// (docs/decisions/0270-led-pixels.md): larger blocks with a finer limit light fewer samples.
+pub(crate) fn most_apart(quality_jod: f32) -> f32 {
+    0.05 * (2.5 * (9.5 - quality_jod)).exp2().clamp(0.4, 2.0)
+}
+
+/// Qualities in JOD, best first, and the factor on Guenter's angle that gives the blocks of each.
+type Qualities = [(f32, f32); 7];
+
+/// Of a frame by itself: found by means over the demo scene, Sponza and the castle with 1280 pixels over
+/// 60 degrees, five pictures (docs/benchmarks/coarse.md), which are 0.03 to 0.16 above the quality: other
+/// pictures are harder. That of 10 is extrapolated.
+const QUALITIES: Qualities = [
     (10.0, 0.07),
-    (9.8, 0.2),
-    (9.59, 0.45),
-    (9.5, 0.68),
-    (9.38, 1.0),
-    (9.3, 1.4),
-    (9.11, 2.2),
+    (9.8, 0.4),
+    (9.7, 0.68),
+    (9.6, 1.0),
+    (9.5, 1.4),
+    (9.3, 2.2),
+    (9.1, 3.5),
 ];
 
-/// The same where bumpy surfaces request no finer levels than others: measured likewise, those of
-/// 9.85 and 8.91 by three pictures of five.
-const EVEN_QUALITIES: [(f32, f32); 7] = [
+/// Where light is kept from frame to frame. A block's share of the samples of a frame does not depend
+/// on its size, so that large ones renew the light around moving shadows too slowly: by videos of the
+/// demo scene, Sponza and two levels (docs/decisions/0270-led-pixels.md).
+const KEPT_QUALITIES: Qualities = [
+    (10.0, 0.05),
+    (9.8, 0.15),
+    (9.59, 0.35),
+    (9.5, 0.52),
+    (9.38, 0.77),
+    (9.3, 1.08),
+    (9.11, 1.7),
+];
+
+/// Where bumpy surfaces request no finer levels than others: those of 9.85 and 8.91 by three pictures
+/// of five, before pixels were shaded by themselves where samples disagree.
+const EVEN_QUALITIES: Qualities = [
     (10.0, 0.05),
     (9.85, 0.15),
     (9.61, 0.3),
@@ -59,28 +80,34 @@ const MEASURED_DENSITY: f32 = 1108.52;
 /// blocks of the same angle leave out: found by measurement (docs/decisions/0208-denser-displays.md).
 const DENSER: f32 = 0.75;
 
-/// Factor on blocks where light is kept from frame to frame and bumpy surfaces are refined. A block's
-/// share of the samples of a frame does not depend on its size, so that large ones renew the light
-/// around moving shadows too slowly: found by measurement (docs/decisions/0210-bumps.md).
-const KEPT: f32 = 0.77;
-
 /// Sides of blocks: at the gaze in radians, and growth per radian of eccentricity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Blocks {
+pub(super) struct Side {
     pub(super) at_gaze: f32,
     pub(super) growth: f32,
 }
 
+/// What blocks are for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Blocks {
+    /// Bumpy surfaces request finer levels than others; all light is the frame's own.
+    OfOneFrame,
+    /// The same, and light is kept from frame to frame.
+    OfKeptLight,
+    /// Bumpy surfaces request what others do.
+    WithEvenBumps,
+}
+
 impl Blocks {
     /// The largest blocks that keep a quality on a display with so many pixels per radian in its
-    /// centre, where bumpy surfaces are refined or not.
-    pub(super) fn of_quality(quality: f32, density: f32, refines_bumps: bool) -> Self {
-        let qualities = if refines_bumps {
-            QUALITIES
-        } else {
-            EVEN_QUALITIES
+    /// centre.
+    pub(super) fn side(self, quality_jod: f32, density: f32) -> Side {
+        let qualities = match self {
+            Self::OfOneFrame => QUALITIES,
+            Self::OfKeptLight => KEPT_QUALITIES,
+            Self::WithEvenBumps => EVEN_QUALITIES,
         };
-        let after = qualities.partition_point(|&(q, _)| q > quality);
+        let after = qualities.partition_point(|&(q, _)| q > quality_jod);
         let [(q0, f0), (q1, f1)] = match after {
             0 => [qualities[0]; 2],
             n if n == qualities.len() => [qualities[n - 1]; 2],
@@ -89,21 +116,13 @@ impl Blocks {
         let along = if q0 == q1 {
             0.0
         } else {
-            (quality - q0) / (q1 - q0)
+            (quality_jod - q0) / (q1 - q0)
         };
         let finer = (MEASURED_DENSITY / density).min(1.0).powf(DENSER);
         let factor = f0 * (f1 / f0).powf(along) * finer;
-        Self {
+        Side {
             at_gaze: factor * ACUITY,
             growth: factor * SLOPE,
-        }
-    }
-
-    /// Those of light that is kept from frame to frame.
-    pub(super) fn of_kept_light(self) -> Self {
-        Self {
-            at_gaze: KEPT * self.at_gaze,
-            growth: KEPT * self.growth,
         }
     }
 }

@@ -40,7 +40,7 @@ impl FinestRate {
         // Before the geometry nobody knows where bumps are: no coarser than the request of a frame that
         // does not refine them. That is finer than this frame's away from bumps, and coarser on them.
         let density = densest(s.picture.width as f32, request.display_from_ndc);
-        let blocks = acuity::Blocks::of_quality(s.eye.quality_jod, density, false);
+        let blocks = acuity::Blocks::WithEvenBumps.side(s.eye.quality_jod, density);
         Some(Self {
             block_at_gaze: blocks.at_gaze.min(request.block_at_gaze),
             block_growth: blocks.growth.min(request.block_growth),

@@ -5,7 +5,6 @@ use crate::every_pixel::{LevelNumbers, LevelPass, LevelRecipe};
 use crate::geometry::GBuffer;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, sampled_layers, uniform};
 use crate::recorder::Recorder;
-use crate::stereo::{Eye, LensFit};
 use crate::{Settings, shader};
 
 /// Fills the rate map.
@@ -102,15 +101,13 @@ impl RateMapPass {
     pub(crate) fn draw(
         &self,
         recorder: &mut Recorder<'_>,
-        settings: &Settings,
-        (eyes, lenses): (&[Eye; 2], Option<&[LensFit; 2]>),
+        uniform: &RequestUniform,
         gbuffer: &GBuffer,
         target: &RateTargets,
     ) {
         let gpu = recorder.gpu;
-        let uniform = RequestUniform::new(settings, eyes, lenses);
         gpu.queue
-            .write_buffer(&self.request_uniform, 0, bytemuck::bytes_of(&uniform));
+            .write_buffer(&self.request_uniform, 0, bytemuck::bytes_of(uniform));
         let request_group = bind_group(
             &gpu.device,
             "requested levels",

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 #[cfg(test)]
 use super::RateImage;
-use super::acuity;
+use super::acuity::{self, Blocks};
 use crate::stereo::{Eye, EyeLayout, LensFit};
 use crate::{Composite, RateCombine, RateSource, RefineEdges, Settings, Shading};
 
@@ -43,16 +43,40 @@ pub(super) fn densest(width: f32, display_from_ndc: [[f32; 4]; 2]) -> f32 {
 impl RequestUniform {
     /// The uniform for these settings and eyes; `lenses` are both eyes' where the output has them.
     pub(crate) fn new(s: &Settings, eyes: &[Eye; 2], lenses: Option<&[LensFit; 2]>) -> Self {
+        let blocks = if s.is_rated_for_kept_light() {
+            Blocks::OfKeptLight
+        } else {
+            Blocks::OfOneFrame
+        };
+        Self::with_blocks(s, eyes, lenses, blocks)
+    }
+
+    /// That of a frame that finds no kept light.
+    pub(crate) fn of_first_frame(
+        s: &Settings,
+        eyes: &[Eye; 2],
+        lenses: Option<&[LensFit; 2]>,
+    ) -> Self {
+        Self::with_blocks(s, eyes, lenses, Blocks::OfOneFrame)
+    }
+
+    fn with_blocks(
+        s: &Settings,
+        eyes: &[Eye; 2],
+        lenses: Option<&[LensFit; 2]>,
+        blocks: Blocks,
+    ) -> Self {
         let (width, height) = (s.picture.width as f32, s.picture.height as f32);
         let layout = EyeLayout::of(s);
         let right = [0, 1].map(|axis| s.eye.gaze[axis] + s.stereo.gaze_shift[axis]);
         let displays = [0, 1].map(|eye| acuity::display_from_ndc(s, &eyes[eye]));
         let density = densest(width, displays);
-        let refines = refines_bumps(s);
-        let mut blocks = acuity::Blocks::of_quality(s.eye.quality_jod, density, refines);
-        if refines && s.is_rated_for_kept_light() {
-            blocks = blocks.of_kept_light();
-        }
+        let blocks = if refines_bumps(s) {
+            blocks
+        } else {
+            Blocks::WithEvenBumps
+        };
+        let side = blocks.side(s.eye.quality_jod, density);
         let gaze = |eye: u32, [x, y]: [f32; 2]| {
             let first = (eye * layout.stride) as f32;
             [first + x * width, y * height, 0.0, 0.0]
@@ -83,8 +107,8 @@ impl RequestUniform {
                 },
                 _ => crate::COARSEST_LEVEL,
             }),
-            block_at_gaze: blocks.at_gaze,
-            block_growth: blocks.growth,
+            block_at_gaze: side.at_gaze,
+            block_growth: side.growth,
             display_from_ndc: displays,
             gaze_direction: [
                 acuity::direction(displays[0], s.eye.gaze),
@@ -275,7 +299,7 @@ mod tests {
             smaller = refined;
         }
         let default = growth(9.5, RefineEdges::Graded, false);
-        assert!((default - 0.68).abs() < 1e-3, "{default}");
+        assert!((default - 1.4).abs() < 1e-3, "{default}");
     }
 
     #[test]

@@ -25,7 +25,7 @@ impl Renderer {
         let samples = stages.targets.samples.as_ref();
         Counters {
             tiles: tiles.map(|tiles| &tiles.counts),
-            unlit: tiles.and_then(|tiles| Some(&tiles.light.as_ref()?.unlit_count)),
+            unlit: tiles.and_then(|tiles| Some(&tiles.light.as_ref()?.unlit_counts)),
             kept,
             edges: samples
                 .filter(|_| stages.antialias.is_some())

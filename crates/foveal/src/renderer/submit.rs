@@ -10,9 +10,9 @@ use crate::frame::FrameUniform;
 use crate::geometry::{Draws, ResolveAt};
 use crate::gpu::CpuTimer;
 use crate::lights::{ClusterGrid, SceneLights};
-use crate::rate::FinestRate;
+use crate::rate::{FinestRate, RequestUniform};
 use crate::recorder::Recorder;
-use crate::shading::{HistoryStage, Samples};
+use crate::shading::HistoryStage;
 use crate::shadow::Receivers;
 use crate::stereo::EyeLayout;
 use crate::targets::Targets;
@@ -402,9 +402,14 @@ impl Stages {
                 let history = coarse.history.as_ref();
                 let smooths_by_rate = crate::antialias::follows_rates(settings);
                 if smooths_by_rate || history.is_none_or(HistoryStage::needs_rates) {
-                    let eyes = (&seen.eyes, seen.lenses.as_ref());
-                    let rate_map = &mut coarse.rate_map;
-                    rate_map.draw(recorder, settings, eyes, gbuffer, &tiles.rate);
+                    let request = if history.is_some_and(HistoryStage::starts) {
+                        RequestUniform::of_first_frame
+                    } else {
+                        RequestUniform::new
+                    };
+                    let request = request(settings, &seen.eyes, seen.lenses.as_ref());
+                    let rate_map = &coarse.rate_map;
+                    rate_map.draw(recorder, &request, gbuffer, &tiles.rate);
                 }
                 &tiles.rate.owner.whole
             }
@@ -464,7 +469,7 @@ impl Stages {
             }
             _ => {
                 let radiance = &targets.radiance_view;
-                shading.shade(recorder, input, Samples::EveryPixel, radiance);
+                shading.shade(recorder, input, radiance);
             }
         }
     }
@@ -481,9 +486,9 @@ impl Stages {
         coarse.shading.shade(recorder, input, tiles);
         coarse.composite.join(recorder, targets, tiles);
         if let Some(light) = &tiles.light {
-            let unlit = Samples::List(&light.unlit);
             let radiance = &targets.radiance_view;
-            self.shading.shade(recorder, input, unlit, radiance);
+            coarse.shading.shade_unlit(recorder, input, light, radiance);
+            coarse.composite.follow(recorder, targets, light);
         }
     }
 

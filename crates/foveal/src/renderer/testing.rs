@@ -4,10 +4,10 @@ use super::{Frame, Renderer, Stages};
 use crate::FrameStats;
 use crate::frame::FrameUniform;
 use crate::geometry::{GeometryPass, ResolveAt};
-use crate::lights::{ClusterGrid, LightAssigner, SceneLights};
+use crate::lights::{ClusterGrid, LightAssigner};
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
-use crate::shading::{Balance, CoarseShading, HistoryStage, Samples};
+use crate::shading::{Balance, CoarseShading, HistoryStage};
 use crate::stereo::{EyeLayout, eyes};
 use crate::targets::Targets;
 use foveal_scene::Camera;
@@ -157,22 +157,5 @@ impl Renderer {
         let rows = settings.picture.height;
         let targets = crate::antialias::SampleTargets::with_room(&self.gpu, settings, rows, 1);
         self.stages.targets.samples = Some(targets);
-    }
-
-    /// Shades the last frame's G-buffer again, sample by sample from a list, into its radiance
-    /// target.
-    pub(crate) fn shade_list(&mut self, texels: &[(u32, u32)]) {
-        self.encode(|recorder, stages, scene| {
-            let (shading, targets) = (&stages.shading, &stages.targets);
-            let list = crate::shading::SampleList::from_texels(recorder.gpu, texels);
-            let lights = SceneLights {
-                table: &scene.light_table,
-                assigner: &stages.lights,
-                shadows: &stages.shadows,
-            };
-            let input = shading.input(recorder.gpu, &targets.gbuffer, lights);
-            let samples = Samples::List(&list);
-            shading.shade(recorder, &input, samples, &targets.radiance_view);
-        });
     }
 }

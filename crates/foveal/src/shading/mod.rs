@@ -1,8 +1,7 @@
 //! Deferred shading: lighting evaluated at samples.
 //!
-//! What is shaded is a [`Samples`]: every pixel, or the texels of a list on the device. The
-//! lighting code is one and the same; rate, backend and anti-aliasing differ only in the samples
-//! that they ask for.
+//! The lighting code is one and the same for all ways of shading; rate, backend and anti-aliasing
+//! differ only in the samples that they ask for.
 
 mod balance;
 mod coarse;
@@ -10,7 +9,6 @@ mod coarse;
 pub(crate) mod dielectric;
 mod history;
 mod pass;
-mod samples;
 #[cfg(test)]
 pub(crate) mod twin;
 #[cfg(test)]
@@ -33,7 +31,6 @@ pub(crate) use coarse::{
 pub(crate) use history::HistoryParameters;
 pub(crate) use history::{HistoryStage, HistoryTargets};
 pub(crate) use pass::{ShadingPass, lighting_constants};
-pub(crate) use samples::{SampleList, Samples};
 #[cfg(test)]
 pub(crate) use variable::RatesUniform;
 pub(crate) use variable::{VariableStage, VariableTargets};

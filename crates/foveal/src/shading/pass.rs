@@ -1,13 +1,10 @@
 //! The shading pass.
 
-use super::{SampleList, Samples};
 use crate::environment::environment_constants;
 use crate::every_pixel::{EveryPixel, Recipe};
 use crate::formats::RADIANCE_FORMAT;
 use crate::geometry::GBuffer;
-use crate::gpu::{
-    Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, written,
-};
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, sampled_layers};
 use crate::lights::SceneLights;
 use crate::recorder::Recorder;
 use crate::{LightAssignment, LightingModel, Settings, shader};
@@ -41,10 +38,7 @@ fn model_constants(settings: &Settings) -> [(&'static str, f64); 2] {
 #[derive(Debug)]
 pub(crate) struct ShadingPass {
     every_pixel: EveryPixel,
-    /// Where the device has compute shaders.
-    list: Option<wgpu::ComputePipeline>,
     input_layout: wgpu::BindGroupLayout,
-    list_layout: wgpu::BindGroupLayout,
 }
 
 impl ShadingPass {
@@ -65,13 +59,6 @@ impl ShadingPass {
             "shading input",
             wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
             &types,
-        );
-        let listed = [storage_read(), storage_read(), written(RADIANCE_FORMAT)];
-        let list_layout = bind_group_layout(
-            gpu,
-            "sample list",
-            wgpu::ShaderStages::COMPUTE,
-            if gpu.is_reduced() { &[] } else { &listed },
         );
         let constants = lighting_constants(settings);
         let drawn = if gpu.is_reduced() {
@@ -94,21 +81,9 @@ impl ShadingPass {
                 constants: &constants,
             },
         );
-        let list = (!gpu.is_reduced()).then(|| {
-            shader::compute(
-                gpu,
-                "shading list",
-                &shader::module(gpu, "shading, list", shader::SHADING_LIST),
-                "shade_list",
-                &[frame_layout, &input_layout, &list_layout],
-                &constants,
-            )
-        });
         Self {
             every_pixel,
-            list,
             input_layout,
-            list_layout,
         }
     }
 
@@ -138,29 +113,17 @@ impl ShadingPass {
         bind_group(&gpu.device, "shading input", &self.input_layout, &resources)
     }
 
-    /// Encodes the pass: shades `samples` into the same texels of `target`.
+    /// Encodes the pass: shades every pixel into `target`.
     pub(crate) fn shade(
         &self,
         recorder: &mut Recorder<'_>,
         input: &wgpu::BindGroup,
-        samples: Samples<'_>,
         target: &wgpu::TextureView,
     ) {
-        match samples {
-            Samples::EveryPixel => self.shade_every_pixel(recorder, input, target, "shading"),
-            Samples::List(list) => {
-                let Some(pipeline) = &self.list else { return };
-                let group = self.list_group(recorder.gpu, list, target);
-                let mut pass = recorder.compute_pass("shading");
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(1, input, &[]);
-                pass.set_bind_group(2, &group, &[]);
-                pass.dispatch_workgroups_indirect(&list.dispatch, 0);
-            }
-        }
+        self.shade_every_pixel(recorder, input, target, "shading");
     }
 
-    /// As [`ShadingPass::shade`] for every pixel, timed under `label`.
+    /// As [`ShadingPass::shade`], timed under `label`.
     pub(crate) fn shade_every_pixel(
         &self,
         recorder: &mut Recorder<'_>,
@@ -169,23 +132,5 @@ impl ShadingPass {
         label: &str,
     ) {
         self.every_pixel.run(recorder, label, &[input], &[target]);
-    }
-
-    fn list_group(
-        &self,
-        gpu: &Gpu,
-        list: &SampleList,
-        target: &wgpu::TextureView,
-    ) -> wgpu::BindGroup {
-        bind_group(
-            &gpu.device,
-            "sample list",
-            &self.list_layout,
-            &[
-                list.texels.as_entire_binding(),
-                list.dispatch.as_entire_binding(),
-                wgpu::BindingResource::TextureView(target),
-            ],
-        )
     }
 }

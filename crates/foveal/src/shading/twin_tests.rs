@@ -1,4 +1,4 @@
-//! Deferred shading beside its twin, by lists and draws, by every light and by clusters.
+//! Deferred shading beside its twin, by every light and by clusters.
 
 use foveal_generate as generate;
 use foveal_scene::{Light, LightKind, Projection};
@@ -31,30 +31,6 @@ fn shading_equals_its_twin_for_metals_and_an_orthographic_camera() {
         far_m: 50.0,
     };
     assert_equals_twin(&scene, &camera, &small(WIDTH, HEIGHT));
-}
-
-#[test]
-fn a_list_shades_its_texels_to_the_same_bytes_as_the_draw_and_no_others() {
-    let scene = generate::cornell();
-    let camera = &scene.cameras[0];
-    let drawn = rendered(&scene, camera, &small(WIDTH, HEIGHT));
-    let drawn: Vec<[u16; 4]> = texels(&drawn.targets().radiance_view);
-    // A view leaves the radiance untouched: zero.
-    let settings = small(WIDTH, HEIGHT).with(|s| s.picture.view = DebugView::Depth);
-    let mut renderer = rendered(&scene, camera, &settings);
-    let listed = |x: u32, y: u32| !(x + y).is_multiple_of(3);
-    let all = (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y)));
-    let list: Vec<(u32, u32)> = all.filter(|&(x, y)| listed(x, y)).collect();
-    renderer.shade_list(&list);
-    let shaded: Vec<[u16; 4]> = texels(&renderer.targets().radiance_view);
-    for (i, (shaded, drawn)) in shaded.iter().zip(&drawn).enumerate() {
-        let expected = if listed(i as u32 % WIDTH, i as u32 / WIDTH) {
-            *drawn
-        } else {
-            [0; 4]
-        };
-        assert_eq!(*shaded, expected, "texel {i}");
-    }
 }
 
 #[test]

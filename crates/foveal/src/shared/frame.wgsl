@@ -72,6 +72,9 @@ struct Frame {
     sun_tangent: f32,
     // A bit for each view whose matrix is that of the frame before.
     resting_views: u32,
+    // Standard deviation of what samples of light say of a pixel, over its luminance, from which on the
+    // pixel is shaded.
+    most_apart: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -1,7 +1,7 @@
 //! The compute backend: an indirect dispatch per level over its list of tiles.
 
 use super::{CoarseTargets, LevelNumbers, by_size};
-use crate::composite::LIGHT_FORMAT;
+use crate::composite::{LIGHT_FORMAT, LightTargets};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read, uniform, written};
 use crate::recorder::Recorder;
 use crate::shading::RADIANCE_FORMAT;
@@ -54,6 +54,34 @@ impl ComputeBackend {
             shade_layout,
             level_numbers: LevelNumbers::new(gpu),
         }
+    }
+
+    /// Encodes the shading of the pixels that no sample speaks for into `radiance`, and of their
+    /// light.
+    pub(super) fn shade_unlit(
+        &self,
+        recorder: &mut Recorder<'_>,
+        input: &wgpu::BindGroup,
+        light: &LightTargets,
+        radiance: &wgpu::TextureView,
+    ) {
+        let group = bind_group(
+            &recorder.gpu.device,
+            "unlit pixels",
+            &self.shade_layout,
+            &[
+                self.level_numbers.binding(0),
+                light.unlit_dispatches.as_entire_binding(),
+                light.unlit.as_entire_binding(),
+                wgpu::BindingResource::TextureView(radiance),
+                wgpu::BindingResource::TextureView(light.samples.level(0)),
+            ],
+        );
+        let mut pass = recorder.compute_pass("shading");
+        pass.set_pipeline(&self.shade[1]);
+        pass.set_bind_group(1, input, &[]);
+        pass.set_bind_group(2, &group, &[]);
+        pass.dispatch_workgroups_indirect(&light.unlit_dispatches, 0);
     }
 
     /// Encodes the shading of the tiles that were listed.

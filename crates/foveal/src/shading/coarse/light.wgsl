@@ -70,6 +70,14 @@ fn highlight(n: vec3f, v: vec3f, l: vec3f, a2: f32) -> f32 {
     return n_dot_l * ggx_lobe(n, v, l, normalize(v + l), n_dot_l, min(a2, 1.0));
 }
 
+// What a surface shows of light that a sample holds, and of the environment, by a look into it.
+fn shown_of(light: SampleLight, s: Surface, v: vec3f, reaching: f32, look: vec3f) -> vec3f {
+    let diffuse = light.diffuse * max(dot(s.normal, light.direction), LEAST_COSINE);
+    let mirror = light.specular * highlight(s.normal, v, light.specular_direction, squared_alpha(s) + light.spread);
+    let lamps = reflected(light_factors(s, v), diffuse, mirror);
+    return min(s.emissive + ambient(s, v, reaching, look) + lamps, vec3f(65504.0));
+}
+
 // The unit vector of a direction; `other` where it has none.
 fn direction_or(direction: vec3f, other: vec3f) -> vec3f {
     let size = length(direction);

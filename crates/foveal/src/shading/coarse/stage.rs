@@ -6,6 +6,7 @@ use super::{
     UsedBackend,
 };
 
+use crate::composite::LightTargets;
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;
 use crate::{CoarseBackend, CoarseStats, Composite, Settings, Timing, shader};
@@ -53,10 +54,12 @@ impl CoarseShading {
         [draw, list]: [shader::Shader; 2],
     ) -> Self {
         let backend = settings.coarse.backend;
+        // Pixels that no sample speaks for come in a list, whatever the backend.
+        let lists_pixels = settings.coarse.composite == Composite::Light;
         Self {
             stencil: (backend != CoarseBackend::Compute)
                 .then(|| StencilBackend::new(gpu, settings, frame_layout, input_layout, draw)),
-            compute: (backend != CoarseBackend::Stencil)
+            compute: (backend != CoarseBackend::Stencil || lists_pixels)
                 .then(|| ComputeBackend::new(gpu, settings, frame_layout, input_layout, list)),
             listing: needs_lists(settings).then(|| TileListing::new(gpu, settings, frame_layout)),
             count: CountPass::new(gpu, settings, frame_layout),
@@ -87,6 +90,19 @@ impl CoarseShading {
             compute.shade(recorder, input, target);
         } else if let Some(stencil) = &self.stencil {
             stencil.shade(recorder, input, target);
+        }
+    }
+
+    /// Encodes the shading of the pixels that no sample of `light` speaks for into `radiance`.
+    pub(crate) fn shade_unlit(
+        &self,
+        recorder: &mut Recorder<'_>,
+        input: &wgpu::BindGroup,
+        light: &LightTargets,
+        radiance: &wgpu::TextureView,
+    ) {
+        if let Some(compute) = &self.compute {
+            compute.shade_unlit(recorder, input, light, radiance);
         }
     }
 

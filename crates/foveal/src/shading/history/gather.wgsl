@@ -1,6 +1,8 @@
 // Pixels that have no history take the light of the samples around them.
 
 #import composite/gather.wgsl
+#import composite/leaders.wgsl
+#import composite/led.wgsl
 #import composite/tiling.wgsl
 #import shading/coarse/light.wgsl
 #import shading/history/layout.wgsl
@@ -9,6 +11,7 @@
 #import shared/layers.wgsl
 #import shared/surface.wgsl
 #import shared/environment.wgsl
+#import shared/wanted.wgsl
 
 @group(1) @binding(1) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
@@ -19,10 +22,14 @@
 // Of the pixels that have no history.
 @group(1) @binding(9) var<storage, read> dispatch: Dispatch;
 @group(1) @binding(6) var<storage, read> bare: array<u32>;
-// Pixels that no sample speaks for.
+// Pixels to be shaded where no sample speaks for them.
 @group(1) @binding(7) var<storage, read_write> unlit: array<vec2u>;
 // What pixels keep from here on, on its way to `light`.
 @group(1) @binding(8) var gathered: texture_storage_2d<rgba32uint, write>;
+// From its end back: pixels that are led, as `led_entry` has them.
+@group(1) @binding(10) var<storage, read_write> led: array<u32>;
+// A bit for each pixel that is to be shaded.
+@group(1) @binding(11) var<storage, read_write> wanted: array<atomic<u32>>;
 
 fn sampled_at(tile: Tile) -> vec2u {
     return sample_texel(tile.block, tile.level, 0u);
@@ -45,14 +52,23 @@ fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     let v = direction_to_eye(view_at(pixel), position);
     let s = unpack_surface(load_words(gbuffer_surface, texel), position);
     let by = light_factors(s, v);
-    let found = gather(texel, tile_at(texel), s, by, v, depth);
+    let own = tile_at(texel);
+    let slope = depth_slopes(texel, depth);
+    let found = gather(texel, own, s, by, v, depth, slope);
     let diffuse = found.diffuse / found.weight;
     let mirror = found.specular / found.weight;
     let lights = reflected(by, diffuse, mirror);
     let seen = environment_seen(pixel, view_distance(depth));
     let other = s.emissive + ambient(s, v, seen, environment_look(s, v, false));
     if is_unsure(found, lights, other) {
-        unlit[atomicAdd(&listed[UNLIT].count, 1u)] = vec2u(sample_entry(texel, 0u), 0u);
+        let takes = is_led(texel, own.level, s.normal, depth, slope);
+        if takes {
+            led[arrayLength(&led) - 1u - atomicAdd(&listed[LED].count, 1u)] = led_entry(texel);
+        }
+        let shaded = select(texel, leader_of(texel), takes);
+        if is_first_to_want(shaded) {
+            unlit[atomicAdd(&listed[UNLIT].count, 1u)] = vec2u(sample_entry(shaded, 0u), 0u);
+        }
         textureStore(gathered, texel, vec4u(0u));
         return;
     }

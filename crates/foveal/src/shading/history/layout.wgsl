@@ -81,14 +81,15 @@ fn list_index(group: vec3u, local: u32, across: u32) -> u32 {
 
 // The lists: samples of blocks (`of_level` counts single pixels as well); pixels that have no history;
 // of these the ones that no sample speaks for; pixels that ask for a sample; pixels that are shaded by
-// themselves. The first and the last list share an array: single pixels stand from its beginning on,
+// themselves; pixels that take their leader's light. The first and the fifth list share an array: single pixels stand from its beginning on,
 // blocks from its end back.
 const SAMPLES: u32 = 0u;
 const BARE: u32 = 1u;
 const UNLIT: u32 = 2u;
 const CHOSEN: u32 = 3u;
 const SINGLE: u32 = 4u;
-const LISTS: u32 = 5u;
+const LED: u32 = 5u;
+const LISTS: u32 = 6u;
 
 // A choice: below this the level of the block whose sample a pixel waits for; else it is shaded by
 // itself, and the rest says what the luminance that is expected there is known from.

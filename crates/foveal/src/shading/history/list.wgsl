@@ -3,7 +3,7 @@
 #import shading/history/layout.wgsl
 #import shared/blocks.wgsl
 #import shared/environment.wgsl
-#import shared/frame.wgsl
+#import shared/wanted.wgsl
 
 @group(1) @binding(0) var<storage, read> dispatch: Dispatch;
 // Entries with a choice in place of a level.
@@ -16,13 +16,6 @@
 @group(1) @binding(5) var<storage, read_write> bare: array<u32>;
 // A bit for each pixel that is a block's sample.
 @group(1) @binding(6) var<storage, read_write> wanted: array<atomic<u32>>;
-
-// Whether this is the first pixel that asks for its block's sample.
-fn is_first_to_want(sample: vec2u) -> bool {
-    let number = sample.y * u32(frame.target_size.x) + sample.x;
-    let bit = 1u << (number & 31u);
-    return (atomicOr(&wanted[number >> 5u], bit) & bit) == 0u;
-}
 
 @compute @workgroup_size(64)
 fn list_samples(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {

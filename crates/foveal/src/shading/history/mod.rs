@@ -13,6 +13,9 @@
 
 mod changed;
 #[cfg(test)]
+mod first_tests;
+mod gather;
+#[cfg(test)]
 mod gaze_tests;
 mod lit;
 #[cfg(test)]

@@ -37,8 +37,8 @@ pub(crate) struct HistoryParameters {
 
 /// A pipeline and the layout of its own bind group.
 #[derive(Debug)]
-struct Pass<P = wgpu::ComputePipeline> {
-    pipeline: P,
+pub(super) struct Pass<P = wgpu::ComputePipeline> {
+    pub(super) pipeline: P,
     layout: wgpu::BindGroupLayout,
 }
 
@@ -92,8 +92,10 @@ pub(super) struct HistoryPasses {
     size: Pass,
     /// Of blocks, and of single pixels.
     shade: [Pass; 2],
-    gather: Pass,
-    scatter: Pass,
+    pub(super) gather: Pass,
+    pub(super) follow: Pass,
+    /// Of pixels that were gathered for, and of those that are led.
+    pub(super) scatter: [Pass; 2],
     rest: Pass,
     /// A [`HistoryParameters`].
     parameters: wgpu::Buffer,
@@ -194,18 +196,29 @@ impl HistoryPasses {
                 "gather_light",
                 None,
                 &[
-                    uint, words, depth, uint, radiance, write, read, write, light, read,
+                    uint, words, depth, uint, radiance, write, read, write, light, read, write,
+                    write,
                 ],
                 &environment,
             ),
-            scatter: pass(
-                "gathered light",
-                shader::SHADING_HISTORY_SCATTER,
-                "scatter",
+            follow: pass(
+                "led pixels",
+                shader::COMPOSITE_FOLLOW.variant(&["KEPT"]),
+                "follow",
                 None,
-                &[read, read, uint, light],
-                &[],
+                &[words, depth, uint, radiance, read, read, light],
+                &[&environment[..], &[("LIST", List::Led.row())]].concat(),
             ),
+            scatter: [false, true].map(|from_end| {
+                pass(
+                    "gathered light",
+                    shader::SHADING_HISTORY_SCATTER,
+                    "scatter",
+                    None,
+                    &[read, read, uint, light],
+                    &[("FROM_END", f64::from(u8::from(from_end)))],
+                )
+            }),
             rest: pass(
                 "pixels in turn",
                 shader::SHADING_HISTORY_REST,
@@ -238,19 +251,19 @@ impl HistoryPasses {
 }
 
 /// What the passes of one frame read and write.
-struct Frame<'a> {
+pub(super) struct Frame<'a> {
     gpu: &'a Gpu,
     /// The bind group of lights, materials and G-buffer that shading reads.
     input: &'a wgpu::BindGroup,
-    targets: &'a Targets,
-    rate: &'a RateTargets,
-    history: &'a HistoryTargets,
+    pub(super) targets: &'a Targets,
+    pub(super) rate: &'a RateTargets,
+    pub(super) history: &'a HistoryTargets,
     /// The bind group of `size_lists`.
     sizes: wgpu::BindGroup,
     /// Which of the two textures of light, and of what is seen, this frame writes.
-    now: usize,
+    pub(super) now: usize,
     /// Which holds the last frame's.
-    before: usize,
+    pub(super) before: usize,
 }
 
 impl Frame<'_> {
@@ -260,11 +273,11 @@ impl Frame<'_> {
         (size.width.div_ceil(TILE), size.height.div_ceil(TILE))
     }
 
-    fn light(&self, which: usize) -> wgpu::BindingResource<'_> {
+    pub(super) fn light(&self, which: usize) -> wgpu::BindingResource<'_> {
         view(&self.history.light[which])
     }
 
-    fn group<P>(
+    pub(super) fn group<P>(
         &self,
         pass: &Pass<P>,
         label: &str,
@@ -274,7 +287,7 @@ impl Frame<'_> {
     }
 }
 
-fn view(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
+pub(super) fn view(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(view)
 }
 
@@ -310,6 +323,7 @@ impl HistoryPasses {
                 self.shade_samples(recorder, &frame);
                 self.gather(recorder, &frame);
                 self.shade_unlit(recorder, &frame);
+                self.follow(recorder, &frame);
             }
         }
         history.show(recorder, &targets.radiance_view);
@@ -421,53 +435,8 @@ impl HistoryPasses {
         self.shade(&mut pass, frame, List::Samples);
     }
 
-    /// Gives pixels without light that of their neighbours on the same surface, and lists those
-    /// that have no such neighbour.
-    fn gather(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        let (h, gbuffer) = (frame.history, &frame.targets.gbuffer);
-        let gather = frame.group(
-            &self.gather,
-            "gathering light",
-            &[
-                view(&frame.rate.owner.whole),
-                view(&gbuffer.surface_layers),
-                view(&gbuffer.depth_layers),
-                frame.light(frame.now),
-                view(&h.radiance),
-                h.listed.as_entire_binding(),
-                h.bare.as_entire_binding(),
-                h.samples.as_entire_binding(),
-                frame.light(frame.before),
-                h.dispatch(List::Bare),
-            ],
-        );
-        let scatter = frame.group(
-            &self.scatter,
-            "gathered light",
-            &[
-                h.dispatch(List::Bare),
-                h.bare.as_entire_binding(),
-                frame.light(frame.before),
-                frame.light(frame.now),
-            ],
-        );
-        let mut pass = recorder.compute_pass("composite");
-        for (stage, group) in [(&self.gather, &gather), (&self.scatter, &scatter)] {
-            pass.set_pipeline(&stage.pipeline);
-            pass.set_bind_group(1, group, &[]);
-            pass.dispatch_workgroups_indirect(&h.dispatches, List::Bare.offset());
-        }
-        self.size_lists(&mut pass, frame);
-    }
-
-    /// Shades the pixels that found no light among their neighbours.
-    fn shade_unlit(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
-        let mut pass = recorder.compute_pass("shading");
-        self.shade(&mut pass, frame, List::Unlit);
-    }
-
     /// Shades the pixels of a list.
-    fn shade(&self, pass: &mut wgpu::ComputePass<'_>, frame: &Frame<'_>, list: List) {
+    pub(super) fn shade(&self, pass: &mut wgpu::ComputePass<'_>, frame: &Frame<'_>, list: List) {
         let h = frame.history;
         let [blocks, single] = &self.shade;
         let by = match list {
@@ -492,7 +461,7 @@ impl HistoryPasses {
     }
 
     /// Turns the lengths of lists into sizes of dispatches.
-    fn size_lists(&self, pass: &mut wgpu::ComputePass<'_>, frame: &Frame<'_>) {
+    pub(super) fn size_lists(&self, pass: &mut wgpu::ComputePass<'_>, frame: &Frame<'_>) {
         pass.set_pipeline(&self.size.pipeline);
         pass.set_bind_group(1, &frame.sizes, &[]);
         pass.dispatch_workgroups(1, 1, 1);

@@ -174,14 +174,6 @@ fn remember(before: vec2f, texel: vec2u, picture: Picture, expected: Expected, p
     return memory;
 }
 
-// What a surface shows of the light that is kept, and of the environment, by a look into it.
-fn shown_of(light: SampleLight, s: Surface, v: vec3f, reaching: f32, look: vec3f) -> vec3f {
-    let diffuse = light.diffuse * max(dot(s.normal, light.direction), LEAST_COSINE);
-    let mirror = light.specular * highlight(s.normal, v, light.specular_direction, squared_alpha(s) + light.spread);
-    let lamps = reflected(light_factors(s, v), diffuse, mirror);
-    return min(s.emissive + ambient(s, v, reaching, look) + lamps, vec3f(65504.0));
-}
-
 // Whether a pixel's share of its block's samples is due. What proved wrong is renewed sooner.
 fn is_due(texel: vec2u, level: u32, error: f32) -> bool {
     let block = exp2(-2.0 * f32(level));
@@ -253,7 +245,9 @@ fn reprojected(texel: vec2u) -> Reprojected {
     }
     var notes = memory.seen & (SEEN_OWN | (SEEN_LEVEL << SEEN_LEVEL_SHIFT));
     notes = select(notes, SEEN_OWN, is_shaded);
-    notes = select(notes, min(own.level, SEEN_LEVEL) << SEEN_LEVEL_SHIFT, is_bare);
+    // A frame without history has larger blocks. Were they noted, the next one would sample all anew.
+    let noted = own.level - min(own.level, parameters.reset);
+    notes = select(notes, min(noted, SEEN_LEVEL) << SEEN_LEVEL_SHIFT, is_bare);
     let seen = (who.x & SEEN_INSTANCE) | SEEN_AT_ALL | distance_bits(distance) | notes;
     let shown = shown_of(unpack_light(memory.light), s, v, environment_seen(pixel, distance), look);
     return Reprojected(memory.light, seen, vec4f(shown, 1.0));

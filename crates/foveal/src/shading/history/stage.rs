@@ -9,9 +9,9 @@ use crate::gpu::Gpu;
 use crate::lights::LightUniform;
 use crate::rate::RateTargets;
 use crate::recorder::Recorder;
+use crate::shading::ShadingPass;
 use crate::shading::coarse::UsedBackend;
 use crate::shading::history::targets;
-use crate::shading::{Samples, ShadingPass};
 use crate::shadow::Place;
 use crate::targets::Targets;
 use crate::{CoarseStats, Settings, ShadowSizes, Shadows};
@@ -142,6 +142,11 @@ impl HistoryStage {
         self.rested > 0
     }
 
+    /// Whether the frame finds no light that was kept.
+    pub(crate) fn starts(&self) -> bool {
+        self.parameters.reset != 0
+    }
+
     /// Whether the frame shows the last one's radiance again, all of whose pixels were shaded.
     pub(crate) fn is_again(&self) -> bool {
         self.again
@@ -231,7 +236,7 @@ impl HistoryStage {
         kept: &HistoryTargets,
     ) {
         if !self.again {
-            shading.shade(recorder, input, Samples::EveryPixel, &kept.radiance);
+            shading.shade(recorder, input, &kept.radiance);
         }
         kept.show(recorder, &targets.radiance_view);
     }

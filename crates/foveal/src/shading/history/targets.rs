@@ -24,15 +24,21 @@ pub(super) enum List {
     Unlit = 2,
     Chosen = 3,
     Single = 4,
+    Led = 5,
 }
 
 /// Lists of a frame.
-const LISTS: u64 = 5;
+const LISTS: u64 = 6;
 
 impl List {
     /// Where its `Dispatch` begins.
     pub(super) const fn offset(self) -> u64 {
         self as u64 * LIST_STEP
+    }
+
+    /// The same in rows of four words.
+    pub(super) const fn row(self) -> f64 {
+        (self.offset() / 16) as f64
     }
 }
 
@@ -51,12 +57,15 @@ pub(crate) struct HistoryTargets {
     pub(super) dispatches: wgpu::Buffer,
     /// Samples to be shaded: pixels from the beginning on, blocks from the end back; then unlit pixels.
     pub(super) samples: wgpu::Buffer,
-    /// Pixels that ask for a sample.
+    /// Pixels that ask for a sample; then, from the end back, those that take their leader's light.
     pub(super) chosen: wgpu::Buffer,
     /// Pixels that have no history.
     pub(super) bare: wgpu::Buffer,
     /// A bit for each pixel that is a block's sample.
     pub(super) wanted: wgpu::Buffer,
+    /// A bit for each pixel that is to be shaded because no sample speaks for it or for one that it
+    /// leads.
+    pub(super) unlit: wgpu::Buffer,
     /// What samples say of each tile.
     pub(super) measured: wgpu::Buffer,
     /// What they said of late.
@@ -104,6 +113,7 @@ impl HistoryTargets {
             chosen: buffer("chosen pixels", pixels * 4, none),
             bare: buffer("bare pixels", pixels * 4, none),
             wanted: buffer("wanted samples", pixels.div_ceil(32) * 4, none),
+            unlit: buffer("unlit pixels", pixels.div_ceil(32) * 4, none),
             measured: buffer("measured tiles", tiles * 8, none),
             kept: buffer("kept tiles", tiles * 8, none),
             tiles: gpu::target(gpu, "tiles", across_and_down, TILE_FORMAT, stored),
@@ -120,6 +130,7 @@ impl HistoryTargets {
             &self.chosen,
             &self.bare,
             &self.wanted,
+            &self.unlit,
             &self.measured,
             &self.kept,
         ];

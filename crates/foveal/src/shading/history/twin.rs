@@ -179,6 +179,7 @@ impl Seen {
         if level == 0 {
             return (Fate::Shaded, now | OWN);
         }
-        (Fate::Bare, now | level.min(7) << LEVEL_SHIFT)
+        let noted = level.saturating_sub(parameters.reset);
+        (Fate::Bare, now | noted.min(7) << LEVEL_SHIFT)
     }
 }

@@ -1,0 +1,70 @@
+//! Blocks of a frame that finds no kept light, and of those after it.
+
+use super::tests::{kept, kept_targets, levels, scene};
+use crate::testing::{Film, texels};
+use crate::{RateSource, Settings};
+
+/// A small picture with large blocks: as wide as a headset's eye.
+fn settings() -> Settings {
+    kept().with(|s| {
+        s.coarse.source = RateSource::Foveated;
+        s.eye.display = "110".parse().expect("it can be read");
+        s.eye.gaze = [0.1, 0.5];
+        s.picture.width = 320;
+        s.picture.height = 200;
+    })
+}
+
+/// Pixels of blocks of 4 x 4 and more, in parts of all.
+fn coarse(film: &Film) -> f64 {
+    let levels = levels(film);
+    levels.iter().filter(|&&l| l & 15 > 1).count() as f64 / levels.len() as f64
+}
+
+#[test]
+fn a_first_frame_has_the_blocks_of_a_frame_by_itself_and_the_next_one_finer_ones() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    let settings = settings();
+    let mut film = Film::new(&scene, &settings);
+    let first = film.draw(camera).coarse.expect("coarse shading");
+    let blocks = levels(&film);
+    let mut alone = Film::new(&scene, &settings.clone().with(|s| s.coarse.history = false));
+    alone.draw(camera);
+    assert!(blocks == levels(&alone));
+    let of_first = coarse(&film);
+
+    let mut moved = camera.clone();
+    moved.world_from_view.w_axis.x += 0.01;
+    let second = film.draw(&moved).coarse.expect("coarse shading");
+    assert!(
+        coarse(&film) < 0.9 * of_first,
+        "{of_first} {}",
+        coarse(&film)
+    );
+    // What the first frame found is good enough for many of them.
+    let [first, second] = [first, second].map(|stats| stats.shaded_fraction);
+    assert!(second < 0.8 * first, "{first} {second}");
+}
+
+#[test]
+fn every_pixel_keeps_light_of_a_first_frame_and_some_their_neighbours() {
+    let scene = scene();
+    let mut film = Film::new(&scene, &settings());
+    film.draw(&scene.cameras[0]);
+    let now = usize::from(!film.renderer.history().lit.even);
+    let light: Vec<[u32; 4]> = texels(&kept_targets(&film).light[now]);
+    let targets = film.renderer.targets();
+    let depth: Vec<f32> = texels(&targets.gbuffer.depth_view);
+    let surfaces = || (0..light.len()).filter(|&i| depth[i] > 0.0);
+    let dark = surfaces().filter(|&i| light[i] == [0; 4]).count();
+    assert_eq!(dark, 0);
+    let width = 320;
+    let led = surfaces().filter(|&i| {
+        let [x, y] = [i % width / 2, i / width / 2];
+        let leader = (2 * y + x % 2) * width + 2 * x + y % 2;
+        leader != i && light[leader][..2] == light[i][..2]
+    });
+    let led = led.count();
+    assert!(led > 1000, "{led}");
+}
