@@ -63,8 +63,8 @@ pub struct Timing {
 pub struct CoarseStats {
     /// Samples of each level, finest first.
     pub samples_per_level: Vec<u64>,
-    /// Pixels that no tile's sample speaks for, which were shaded one by one; with the composite of
-    /// light.
+    /// Pixels that were shaded because no tile's sample speaks for them or for pixels that take their
+    /// light; with the composite of light.
     pub unlit_pixels: u64,
     /// All samples and those pixels by all pixels.
     pub shaded_fraction: f64,

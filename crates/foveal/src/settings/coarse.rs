@@ -130,7 +130,7 @@ pub enum CoarseSample {
 )]
 pub enum Composite {
     /// Samples hold light without the surface's own colour. Each pixel's own surface is lit by the
-    /// samples around it. Pixels that no sample fits are shaded by themselves.
+    /// samples around it. Pixels that no sample fits are shaded, in larger blocks one of 2 x 2.
     #[default]
     Light,
     /// Samples hold colours. Continuous patches through the samples join them, guided by geometry;
