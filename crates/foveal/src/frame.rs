@@ -80,7 +80,7 @@ pub(crate) struct FrameUniform {
     pub(crate) light_radius: f32,
     pub(crate) sun_tangent: f32,
     pub(crate) resting_views: u32,
-    pub(crate) most_apart: f32,
+    pub(crate) most_disagreement: f32,
     pub(crate) reserved: [u32; 3],
 }
 
@@ -139,7 +139,7 @@ impl FrameUniform {
             light_radius: shadows.light_radius_m,
             sun_tangent: shadows.sun_tangent,
             resting_views: rests[0] | rests[1] << 1,
-            most_apart: rate::most_apart(settings.eye.quality_jod),
+            most_disagreement: rate::most_disagreement(settings.eye.quality_jod),
             reserved: [0; 3],
         }
     }

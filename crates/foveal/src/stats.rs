@@ -87,7 +87,7 @@ pub struct CoarseStats {
 }
 
 impl CoarseStats {
-    /// Samples of all levels, and pixels that were shaded one by one.
+    /// Samples of all levels, and pixels that were shaded beside them.
     #[must_use]
     pub fn shaded_samples(&self) -> u64 {
         self.samples_per_level.iter().sum::<u64>() + self.unlit_pixels

@@ -57,7 +57,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
                 figure(ui, &format!("Level {level}"), grouped(*samples));
             }
             if coarse.unlit_pixels > 0 {
-                figure(ui, "Pixels by themselves", grouped(coarse.unlit_pixels));
+                figure(ui, "Pixels without a sample", grouped(coarse.unlit_pixels));
             }
         }
         if let Some(variable) = &stats.variable {

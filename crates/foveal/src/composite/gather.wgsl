@@ -61,12 +61,12 @@ struct Gathered {
 }
 
 // Whether no sample speaks for a pixel, or what they say of it lies too far apart: a shadow's edge or
-// a highlight's lies between them. `lights`: what the
-// surface reflects by all of them; `other`: what it shows of emission and the environment.
+// a highlight's lies between them. `lights`: what the surface reflects by all of them; `other`: what it
+// shows of emission and the environment.
 fn is_unsure(found: Gathered, lights: vec3f, other: vec3f) -> bool {
     let mean = luminance(lights);
     let variance = max(found.squares / found.weight - mean * mean, 0.0);
-    let limit = frame.most_apart * (mean + luminance(other) + DARK / frame.exposure);
+    let limit = frame.most_disagreement * (mean + luminance(other) + DARK / frame.exposure);
     return found.weight < LEAST_WEIGHT || variance > limit * limit;
 }
 

@@ -14,9 +14,9 @@ fn leader_of(texel: vec2u) -> vec2u {
 
 // A pixel that is led.
 fn led_entry(texel: vec2u) -> u32 {
-    return texel.x | (texel.y << 14u);
+    return texel.x | (texel.y << 16u);
 }
 
 fn led_texel(entry: u32) -> vec2u {
-    return vec2u(entry, entry >> 14u) & vec2u(0x3fffu);
+    return vec2u(entry, entry >> 16u) & vec2u(0xffffu);
 }

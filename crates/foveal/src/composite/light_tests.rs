@@ -161,6 +161,15 @@ fn the_composite_of_light_equals_its_twin_and_shades_or_leads_pixels_without_a_s
             let is_full = drawn[index(at)] == full[index(at)];
             assert!(is_full, "{at}: needs no sample");
         }
+        let led = joined
+            .iter()
+            .filter(|(_, twin)| twin.radiance.is_none() && !twin.is_close);
+        for leader in led.filter_map(|&(at, _)| match inputs.leader(at) {
+            (Some(leader), false) => Some(index(leader)),
+            _ => None,
+        }) {
+            assert_eq!(drawn[leader], full[leader], "{leader} leads");
+        }
         let (mut wrong, mut compared) = (Vec::new(), 0);
         let (mut unlit, mut led, mut disputed, mut uneven) = (0, 0, 0, 0);
         for (at, twin) in joined {

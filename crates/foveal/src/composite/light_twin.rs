@@ -12,7 +12,7 @@ use crate::shading::twin::{
     unpack_shared_exponent, unpack_surface,
 };
 
-use crate::rate::most_apart;
+use crate::rate::most_disagreement;
 use crate::shadow::{Lookup, lookup};
 use crate::testing::{f32_of_half, gpu, rate_cells, texels};
 use crate::{Renderer, Settings, Shadows};
@@ -34,6 +34,7 @@ const VARIANCE_OF_NORMALS: f32 = 0.2;
 const LED_FROM: u32 = 2;
 const LED_NORMAL: f32 = 0.95;
 const LED_OFF_PLANE: f32 = 0.005;
+const LED_APART: f32 = 0.05;
 
 /// As in `shading/coarse/light.wgsl`.
 const LIGHT_UNIT: f32 = 16.0;
@@ -394,7 +395,7 @@ impl<'a> Inputs<'a> {
         let lamps = (scattered * diffuse + mirrored * specular) / sum;
         let mean = luminance(lamps);
         let lit = mean + luminance(other) + dark;
-        let most_apart = most_apart(self.settings.eye.quality_jod);
+        let most_apart = most_disagreement(self.settings.eye.quality_jod);
         let apart_by = |squares: f32| (squares / sum - mean * mean).max(0.0).sqrt() / lit;
         let apart = apart_by(squares);
         Joined {
@@ -411,17 +412,20 @@ impl<'a> Inputs<'a> {
         let group = texel / 2;
         let leader = 2 * group + group.yx() % 2;
         let outside = leader.cmpge(self.size).any();
-        if self.level(texel) < LED_FROM || outside || leader == texel {
+        if self.level(texel) < LED_FROM || outside || leader == texel || self.depth(leader) == 0.0 {
             return (None, false);
         }
         let depth = self.depth(texel);
         let expected = depth + self.slopes(texel).dot(leader.as_vec2() - texel.as_vec2());
-        let off_plane = (self.depth(leader) - expected).abs() / depth;
+        let [here, away, expected] =
+            [depth, self.depth(leader), expected.max(1e-20)].map(|depth| self.distance(depth));
+        let [off_plane, apart] = [expected, here].map(|from| (away - from).abs() / here);
         let normal = self.surface(texel).normal;
         let cosine = normal.dot(self.surface(leader).normal);
-        let is_led = cosine >= LED_NORMAL && off_plane <= LED_OFF_PLANE;
-        let is_close =
-            (cosine - LED_NORMAL).abs() < 1e-3 || (off_plane - LED_OFF_PLANE).abs() < 1e-4;
+        let is_led = cosine >= LED_NORMAL && off_plane <= LED_OFF_PLANE && apart <= LED_APART;
+        let is_close = (cosine - LED_NORMAL).abs() < 1e-3
+            || (off_plane - LED_OFF_PLANE).abs() < 1e-4
+            || (apart - LED_APART).abs() < 1e-3;
         (is_led.then_some(leader), is_close)
     }
 

@@ -23,7 +23,7 @@ const SLOPE: f32 = 0.0275;
 /// Standard deviation of what samples of light say of a pixel, over its luminance, from which on the
 /// pixel is shaded, by quality in JOD. Found by measurement together with the blocks
 /// (docs/decisions/0270-led-pixels.md): larger blocks with a finer limit light fewer samples.
-pub(crate) fn most_apart(quality_jod: f32) -> f32 {
+pub(crate) fn most_disagreement(quality_jod: f32) -> f32 {
     0.05 * (2.5 * (9.5 - quality_jod)).exp2().clamp(0.4, 2.0)
 }
 
@@ -31,7 +31,7 @@ pub(crate) fn most_apart(quality_jod: f32) -> f32 {
 type Qualities = [(f32, f32); 7];
 
 /// Of a frame by itself: found by means over the demo scene, Sponza and the castle with 1280 pixels over
-/// 60 degrees, five pictures (docs/benchmarks/coarse.md), which are 0.03 to 0.16 above the quality: other
+/// 60 degrees, five pictures (docs/benchmarks/coarse.md), which are 0.03 to 0.17 above the quality: other
 /// pictures are harder. That of 10 is extrapolated.
 const QUALITIES: Qualities = [
     (10.0, 0.07),

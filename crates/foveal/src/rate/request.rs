@@ -51,7 +51,7 @@ impl RequestUniform {
         Self::with_blocks(s, eyes, lenses, blocks)
     }
 
-    /// That of a frame that finds no kept light.
+    /// That of a lit frame that finds no kept light.
     pub(crate) fn of_first_frame(
         s: &Settings,
         eyes: &[Eye; 2],

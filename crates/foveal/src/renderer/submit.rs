@@ -402,7 +402,8 @@ impl Stages {
                 let history = coarse.history.as_ref();
                 let smooths_by_rate = crate::antialias::follows_rates(settings);
                 if smooths_by_rate || history.is_none_or(HistoryStage::needs_rates) {
-                    let request = if history.is_some_and(HistoryStage::starts) {
+                    let starts = history.map_or(settings.keeps_light(), HistoryStage::starts);
+                    let request = if starts {
                         RequestUniform::of_first_frame
                     } else {
                         RequestUniform::new

@@ -74,7 +74,7 @@ struct Frame {
     resting_views: u32,
     // Standard deviation of what samples of light say of a pixel, over its luminance, from which on the
     // pixel is shaded.
-    most_apart: f32,
+    most_disagreement: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -74,7 +74,7 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             light_radius,
             sun_tangent,
             resting_views,
-            most_apart,
+            most_disagreement,
         ]
     );
     assert_same_layout!(

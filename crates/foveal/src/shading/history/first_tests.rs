@@ -27,7 +27,7 @@ fn a_first_frame_has_the_blocks_of_a_frame_by_itself_and_the_next_one_finer_ones
     let camera = &scene.cameras[0];
     let settings = settings();
     let mut film = Film::new(&scene, &settings);
-    let first = film.draw(camera).coarse.expect("coarse shading");
+    film.draw(camera);
     let blocks = levels(&film);
     let mut alone = Film::new(&scene, &settings.clone().with(|s| s.coarse.history = false));
     alone.draw(camera);
@@ -36,15 +36,12 @@ fn a_first_frame_has_the_blocks_of_a_frame_by_itself_and_the_next_one_finer_ones
 
     let mut moved = camera.clone();
     moved.world_from_view.w_axis.x += 0.01;
-    let second = film.draw(&moved).coarse.expect("coarse shading");
+    film.draw(&moved);
     assert!(
         coarse(&film) < 0.9 * of_first,
         "{of_first} {}",
         coarse(&film)
     );
-    // What the first frame found is good enough for many of them.
-    let [first, second] = [first, second].map(|stats| stats.shaded_fraction);
-    assert!(second < 0.8 * first, "{first} {second}");
 }
 
 #[test]
@@ -63,7 +60,9 @@ fn every_pixel_keeps_light_of_a_first_frame_and_some_their_neighbours() {
     let led = surfaces().filter(|&i| {
         let [x, y] = [i % width / 2, i / width / 2];
         let leader = (2 * y + x % 2) * width + 2 * x + y % 2;
-        leader != i && light[leader][..2] == light[i][..2]
+        // All but the normal.
+        let [a, b] = [light[i], light[leader]];
+        leader != i && a[..3] == b[..3] && (a[3] ^ b[3]) & 0xf_ffff == 0
     });
     let led = led.count();
     assert!(led > 1000, "{led}");

@@ -5,8 +5,8 @@ use super::targets::List;
 use crate::recorder::Recorder;
 
 impl HistoryPasses {
-    /// Gives pixels without light that of their neighbours on the same surface, and lists those
-    /// that have no such neighbour.
+    /// Gives pixels without light that of the samples around them. Where none speaks for a pixel, lists
+    /// it or its leader to be shaded.
     pub(super) fn gather(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         let (h, gbuffer) = (frame.history, &frame.targets.gbuffer);
         let gather = frame.group(
@@ -24,10 +24,10 @@ impl HistoryPasses {
                 frame.light(frame.before),
                 h.dispatch(List::Bare),
                 h.chosen.as_entire_binding(),
-                h.unlit.as_entire_binding(),
+                h.wanted_unlit.as_entire_binding(),
             ],
         );
-        recorder.encoder.clear_buffer(&h.unlit, 0, None);
+        recorder.encoder.clear_buffer(&h.wanted_unlit, 0, None);
         let mut pass = recorder.compute_pass("composite");
         pass.set_pipeline(&self.gather.pipeline);
         pass.set_bind_group(1, &gather, &[]);
@@ -36,7 +36,7 @@ impl HistoryPasses {
         self.size_lists(&mut pass, frame);
     }
 
-    /// Shades the pixels that found no light among their neighbours.
+    /// Shades the pixels that are listed for that.
     pub(super) fn shade_unlit(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
         let mut pass = recorder.compute_pass("shading");
         self.shade(&mut pass, frame, List::Unlit);

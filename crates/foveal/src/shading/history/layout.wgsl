@@ -81,8 +81,9 @@ fn list_index(group: vec3u, local: u32, across: u32) -> u32 {
 
 // The lists: samples of blocks (`of_level` counts single pixels as well); pixels that have no history;
 // of these the ones that no sample speaks for; pixels that ask for a sample; pixels that are shaded by
-// themselves; pixels that take their leader's light. The first and the fifth list share an array: single pixels stand from its beginning on,
-// blocks from its end back.
+// themselves; pixels that take their leader's light. The first and the fifth list share an array: single
+// pixels stand from its beginning on, blocks from its end back. So do the fourth and, once that is read,
+// from the end back the last.
 const SAMPLES: u32 = 0u;
 const BARE: u32 = 1u;
 const UNLIT: u32 = 2u;

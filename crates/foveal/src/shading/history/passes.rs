@@ -209,14 +209,14 @@ impl HistoryPasses {
                 &[words, depth, uint, radiance, read, read, light],
                 &[&environment[..], &[("LIST", List::Led.row())]].concat(),
             ),
-            scatter: [false, true].map(|from_end| {
+            scatter: [false, true].map(|led| {
                 pass(
                     "gathered light",
                     shader::SHADING_HISTORY_SCATTER,
                     "scatter",
                     None,
                     &[read, read, uint, light],
-                    &[("FROM_END", f64::from(u8::from(from_end)))],
+                    &[("FROM_LED", f64::from(u8::from(led)))],
                 )
             }),
             rest: pass(

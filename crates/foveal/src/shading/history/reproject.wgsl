@@ -245,9 +245,7 @@ fn reprojected(texel: vec2u) -> Reprojected {
     }
     var notes = memory.seen & (SEEN_OWN | (SEEN_LEVEL << SEEN_LEVEL_SHIFT));
     notes = select(notes, SEEN_OWN, is_shaded);
-    // A frame without history has larger blocks. Were they noted, the next one would sample all anew.
-    let noted = own.level - min(own.level, parameters.reset);
-    notes = select(notes, min(noted, SEEN_LEVEL) << SEEN_LEVEL_SHIFT, is_bare);
+    notes = select(notes, min(own.level, SEEN_LEVEL) << SEEN_LEVEL_SHIFT, is_bare);
     let seen = (who.x & SEEN_INSTANCE) | SEEN_AT_ALL | distance_bits(distance) | notes;
     let shown = shown_of(unpack_light(memory.light), s, v, environment_seen(pixel, distance), look);
     return Reprojected(memory.light, seen, vec4f(shown, 1.0));

@@ -65,7 +65,7 @@ pub(crate) struct HistoryTargets {
     pub(super) wanted: wgpu::Buffer,
     /// A bit for each pixel that is to be shaded because no sample speaks for it or for one that it
     /// leads.
-    pub(super) unlit: wgpu::Buffer,
+    pub(super) wanted_unlit: wgpu::Buffer,
     /// What samples say of each tile.
     pub(super) measured: wgpu::Buffer,
     /// What they said of late.
@@ -113,7 +113,7 @@ impl HistoryTargets {
             chosen: buffer("chosen pixels", pixels * 4, none),
             bare: buffer("bare pixels", pixels * 4, none),
             wanted: buffer("wanted samples", pixels.div_ceil(32) * 4, none),
-            unlit: buffer("unlit pixels", pixels.div_ceil(32) * 4, none),
+            wanted_unlit: buffer("wanted pixels", pixels.div_ceil(32) * 4, none),
             measured: buffer("measured tiles", tiles * 8, none),
             kept: buffer("kept tiles", tiles * 8, none),
             tiles: gpu::target(gpu, "tiles", across_and_down, TILE_FORMAT, stored),
@@ -130,7 +130,7 @@ impl HistoryTargets {
             &self.chosen,
             &self.bare,
             &self.wanted,
-            &self.unlit,
+            &self.wanted_unlit,
             &self.measured,
             &self.kept,
         ];

@@ -179,7 +179,6 @@ impl Seen {
         if level == 0 {
             return (Fate::Shaded, now | OWN);
         }
-        let noted = level.saturating_sub(parameters.reset);
-        (Fate::Bare, now | noted.min(7) << LEVEL_SHIFT)
+        (Fate::Bare, now | level.min(7) << LEVEL_SHIFT)
     }
 }
