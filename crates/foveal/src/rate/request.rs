@@ -51,8 +51,8 @@ impl RequestUniform {
         Self::with_blocks(s, eyes, lenses, blocks)
     }
 
-    /// That of a lit frame that finds no kept light.
-    pub(crate) fn of_first_frame(
+    /// That of a frame by itself, whether or not settings keep light.
+    pub(crate) fn of_one_frame(
         s: &Settings,
         eyes: &[Eye; 2],
         lenses: Option<&[LensFit; 2]>,

@@ -402,9 +402,9 @@ impl Stages {
                 let history = coarse.history.as_ref();
                 let smooths_by_rate = crate::antialias::follows_rates(settings);
                 if smooths_by_rate || history.is_none_or(HistoryStage::needs_rates) {
-                    let starts = history.map_or(settings.keeps_light(), HistoryStage::starts);
-                    let request = if starts {
-                        RequestUniform::of_first_frame
+                    // The device may lack room for the light that settings would have kept.
+                    let request = if settings.keeps_light() && history.is_none() {
+                        RequestUniform::of_one_frame
                     } else {
                         RequestUniform::new
                     };

@@ -17,7 +17,7 @@ impl Settings {
         self.picture.view == DebugView::Final && self.is_rated_for_kept_light()
     }
 
-    /// The same whatever the view: views of rates show those of a lit frame that follows others.
+    /// The same whatever the view: views of rates show those of the lit frame.
     pub(crate) fn is_rated_for_kept_light(&self) -> bool {
         self.coarse.history
             && self.shading.mode == Shading::Coarse

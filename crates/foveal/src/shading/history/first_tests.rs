@@ -1,6 +1,6 @@
-//! Blocks of a frame that finds no kept light, and of those after it.
+//! What is kept of a frame that finds no kept light.
 
-use super::tests::{kept, kept_targets, levels, scene};
+use super::tests::{kept, kept_targets, scene};
 use crate::testing::{Film, texels};
 use crate::{RateSource, Settings};
 
@@ -13,35 +13,6 @@ fn settings() -> Settings {
         s.picture.width = 320;
         s.picture.height = 200;
     })
-}
-
-/// Pixels of blocks of 4 x 4 and more, in parts of all.
-fn coarse(film: &Film) -> f64 {
-    let levels = levels(film);
-    levels.iter().filter(|&&l| l & 15 > 1).count() as f64 / levels.len() as f64
-}
-
-#[test]
-fn a_first_frame_has_the_blocks_of_a_frame_by_itself_and_the_next_one_finer_ones() {
-    let scene = scene();
-    let camera = &scene.cameras[0];
-    let settings = settings();
-    let mut film = Film::new(&scene, &settings);
-    film.draw(camera);
-    let blocks = levels(&film);
-    let mut alone = Film::new(&scene, &settings.clone().with(|s| s.coarse.history = false));
-    alone.draw(camera);
-    assert!(blocks == levels(&alone));
-    let of_first = coarse(&film);
-
-    let mut moved = camera.clone();
-    moved.world_from_view.w_axis.x += 0.01;
-    film.draw(&moved);
-    assert!(
-        coarse(&film) < 0.9 * of_first,
-        "{of_first} {}",
-        coarse(&film)
-    );
 }
 
 #[test]

@@ -4,9 +4,15 @@ use foveal_generate as generate;
 use foveal_scene::Scene;
 
 use super::lit::ROUND;
-use super::tests::{differing, kept, levels, scene, seen};
-use crate::testing::{Film, rendered};
+use super::tests::{differing, kept, scene, seen};
+use crate::testing::{Film, rate_cells, rendered};
 use crate::{Antialiasing, RateSource, Settings, ShadowSizes, Shadows};
+
+/// The levels of blocks of the last frame's rate map.
+fn levels(film: &Film) -> Vec<u8> {
+    let coarse = film.renderer.targets().coarse.as_ref();
+    rate_cells(&coarse.expect("coarse shading").rate.owner, 1)
+}
 
 #[test]
 fn another_image_of_rates_counts_at_rest() {

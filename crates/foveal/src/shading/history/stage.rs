@@ -142,11 +142,6 @@ impl HistoryStage {
         self.rested > 0
     }
 
-    /// Whether the frame finds no light that was kept.
-    pub(crate) fn starts(&self) -> bool {
-        self.parameters.reset != 0
-    }
-
     /// Whether the frame shows the last one's radiance again, all of whose pixels were shaded.
     pub(crate) fn is_again(&self) -> bool {
         self.again

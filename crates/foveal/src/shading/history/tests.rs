@@ -33,12 +33,6 @@ pub(super) fn kept() -> Settings {
     })
 }
 
-/// The levels of blocks of the last frame's rate map.
-pub(super) fn levels(film: &Film) -> Vec<u8> {
-    let coarse = film.renderer.targets().coarse.as_ref();
-    rate_cells(&coarse.expect("coarse shading").rate.owner, 1)
-}
-
 /// The eyes' radiances, without what lies between their pictures.
 pub(super) fn seen(renderer: &Renderer) -> Vec<[u16; 4]> {
     let layout = EyeLayout::of(renderer.settings());
