@@ -10,6 +10,7 @@ fn settings() -> Settings {
         s.coarse.source = RateSource::Foveated;
         s.eye.display = "110".parse().expect("it can be read");
         s.eye.gaze = [0.1, 0.5];
+        s.eye.quality_jod = 9.1;
         s.picture.width = 320;
         s.picture.height = 200;
     })
