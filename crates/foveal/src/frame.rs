@@ -7,7 +7,6 @@ use glam::{Mat4, Vec3};
 use crate::Settings;
 use crate::environment::EnvironmentTerms;
 use crate::lights::ClusterGrid;
-use crate::rate;
 use crate::shadow::LookupSettings;
 use crate::stereo::{Eye, EyeLayout};
 
@@ -139,7 +138,7 @@ impl FrameUniform {
             light_radius: shadows.light_radius_m,
             sun_tangent: shadows.sun_tangent,
             resting_views: rests[0] | rests[1] << 1,
-            most_disagreement: rate::most_disagreement(settings.eye.quality_jod),
+            most_disagreement: settings.most_disagreement(),
             reserved: [0; 3],
         }
     }

@@ -12,7 +12,6 @@ use crate::shading::twin::{
     unpack_shared_exponent, unpack_surface,
 };
 
-use crate::rate::most_disagreement;
 use crate::shadow::{Lookup, lookup};
 use crate::testing::{f32_of_half, gpu, rate_cells, texels};
 use crate::{Renderer, Settings, Shadows};
@@ -395,7 +394,7 @@ impl<'a> Inputs<'a> {
         let lamps = (scattered * diffuse + mirrored * specular) / sum;
         let mean = luminance(lamps);
         let lit = mean + luminance(other) + dark;
-        let most_apart = most_disagreement(self.settings.eye.quality_jod);
+        let most_apart = self.settings.most_disagreement();
         let apart_by = |squares: f32| (squares / sum - mean * mean).max(0.0).sqrt() / lit;
         let apart = apart_by(squares);
         Joined {

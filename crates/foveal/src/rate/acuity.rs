@@ -20,13 +20,6 @@ const ACUITY: f32 = 1.0 / 48.0 * std::f32::consts::PI / 180.0;
 /// difference.
 const SLOPE: f32 = 0.0275;
 
-/// Standard deviation of what samples of light say of a pixel, over its luminance, from which on the
-/// pixel is shaded, by quality in JOD. Found by measurement together with the blocks
-/// (docs/decisions/0270-led-pixels.md): larger blocks with a finer limit light fewer samples.
-pub(crate) fn most_disagreement(quality_jod: f32) -> f32 {
-    0.05 * (2.5 * (9.5 - quality_jod)).exp2().clamp(0.4, 2.0)
-}
-
 /// Qualities in JOD, best first, and the factor on Guenter's angle that gives the blocks of each.
 type Qualities = [(f32, f32); 7];
 

@@ -23,7 +23,6 @@ mod targets;
 pub use image::RateImage;
 pub use pyramid::MinPyramid;
 
-pub(crate) use acuity::most_disagreement;
 pub(crate) use finest::FinestRate;
 pub(crate) use map::RateMapPass;
 pub(crate) use request::RequestUniform;

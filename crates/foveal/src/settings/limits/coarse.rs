@@ -25,6 +25,13 @@ impl Settings {
             && self.coarse.sample == CoarseSample::Center
             && self.coarse.backend != CoarseBackend::Stencil
     }
+
+    /// Standard deviation of what samples of light say of a pixel, over its luminance, from which on
+    /// the pixel is shaded. Found by measurement together with the blocks of a quality
+    /// (docs/decisions/0270-led-pixels.md): larger blocks with a finer limit light fewer samples.
+    pub(crate) fn most_disagreement(&self) -> f32 {
+        0.05 * (2.5 * (9.5 - self.eye.quality_jod)).exp2().clamp(0.4, 2.0)
+    }
 }
 
 /// Checks the settings of coarse shading.
